@@ -1,0 +1,149 @@
+# Billiard-AI. `make demo` and `make check` set a bare Debian 12 up, build and run; every other target expects the packages.
+# BUILD=dir builds elsewhere; SAN=address,undefined (or thread) builds with sanitizers into a folder of its own.
+
+comma := ,
+CC := $(if $(filter default,$(origin CC)),gcc,$(CC))
+CXX := $(if $(filter default,$(origin CXX)),g++,$(CXX))
+OPT ?= -O2
+SAN ?=
+BUILD ?= build$(if $(SAN),/san-$(subst $(comma),-,$(SAN)))
+PREFIX ?= /usr/local
+DESTDIR ?=
+DATA ?= ../shared/data
+INPUT ?=
+JOBS ?= $(shell nproc)
+
+# ---- sources: every file by hand -------------------------------------------------------------------------------------
+
+PHYSICS :=
+SEARCH :=
+VISION :=
+VISION_CV :=
+# app: what the programs share
+APP :=
+# programs: src/app/main_NAME.c becomes build/NAME
+PROGRAMS :=
+# tests/test_NAME.c each; tests/NAME.c shared by them
+TESTS :=
+TEST_SHARED := harness
+# tests that are scripts: tests/NAME.sh, called with the build folder
+TEST_SCRIPTS :=
+# bench/bench_NAME.c each
+BENCHES :=
+LCM_TYPES := animation_t ball_t command_t draw_list_t draw_item_t image_t keyframe_t plan_t plan_entry_t plan_shot_t \
+	plan_request_t status_t metric_t table_state_t
+
+# ---- flags -----------------------------------------------------------------------------------------------------------
+
+WARN := -Wall -Wextra -Wpedantic -Wshadow -Wconversion -Werror
+WARN_C := -Wstrict-prototypes -Wmissing-prototypes
+# -ffp-contract=off: the same bits on every machine and optimisation level.
+BASE := $(OPT) -g -ffp-contract=off -fno-math-errno $(if $(SAN),-fsanitize=$(SAN) -fno-sanitize-recover=all -fno-omit-frame-pointer) \
+	-D_GNU_SOURCE -Isrc -I$(BUILD) -MMD -MP
+CFLAGS_ALL = -std=c17 $(BASE) $(WARN) $(WARN_C) $(CFLAGS)
+CXXFLAGS_ALL = -std=c++17 $(BASE) $(WARN) $(CXXFLAGS)
+
+# pkg-config runs once, when the first file is compiled: on a bare machine the packages come first.
+APP_PKGS := lcm glib-2.0 libconfig jansson cairo sdl2 libsystemd
+APP_CFLAGS = $(eval APP_CFLAGS := $$(shell pkg-config --cflags $(APP_PKGS)))$(APP_CFLAGS)
+CV_CFLAGS = $(eval CV_CFLAGS := $$(shell pkg-config --cflags opencv4 | sed 's/-I/-isystem /g'))$(CV_CFLAGS)
+CV_LIBS := -lopencv_aruco -lopencv_calib3d -lopencv_videoio -lopencv_imgcodecs -lopencv_imgproc -lopencv_core
+APP_LIBS = $(eval APP_LIBS := $$(shell pkg-config --libs $(APP_PKGS)))$(APP_LIBS)
+TEST_LIBS = $(eval TEST_LIBS := $$(shell pkg-config --libs check gsl))$(TEST_LIBS)
+LIBS = $(CV_LIBS) $(APP_LIBS) -lm -lpthread
+
+# ---- objects ---------------------------------------------------------------------------------------------------------
+
+obj = $(patsubst %,$(BUILD)/$(1)/%.o,$(2))
+PHYSICS_O := $(call obj,src/physics,$(PHYSICS))
+SEARCH_O := $(call obj,src/search,$(SEARCH))
+VISION_O := $(call obj,src/vision,$(VISION)) $(call obj,src/vision,$(VISION_CV))
+APP_O := $(call obj,src/app,$(APP))
+LCM_O := $(patsubst %,$(BUILD)/lcmtypes/billiard_%.o,$(LCM_TYPES))
+TEST_SHARED_O := $(call obj,tests,$(TEST_SHARED))
+ARCHIVES := $(BUILD)/libapp.a $(BUILD)/liblcmtypes.a $(BUILD)/libsearch.a $(BUILD)/libvision.a $(BUILD)/libphysics.a
+PROGRAM_BINS := $(addprefix $(BUILD)/,$(PROGRAMS))
+TEST_BINS := $(patsubst %,$(BUILD)/tests/test_%,$(TESTS))
+BENCH_BINS := $(patsubst %,$(BUILD)/bench/bench_%,$(BENCHES))
+
+.PHONY: all demo check check-built bench eval fuzz headers lint install clean setup tests programs
+.SECONDARY:
+.DELETE_ON_ERROR:
+
+all: programs
+programs: $(PROGRAM_BINS)
+tests: $(TEST_BINS)
+
+$(BUILD)/libphysics.a: $(PHYSICS_O)
+$(BUILD)/libsearch.a: $(SEARCH_O)
+$(BUILD)/libvision.a: $(VISION_O)
+$(BUILD)/libapp.a: $(APP_O)
+$(BUILD)/liblcmtypes.a: $(LCM_O)
+$(BUILD)/lib%.a:
+	@rm -f $@ && $(AR) rcsD $@ $^
+
+$(BUILD)/src/%.o: src/%.c
+	@mkdir -p $(@D)
+	$(CC) $(CFLAGS_ALL) $(MODULE_CFLAGS) -c $< -o $@
+$(BUILD)/src/%.o: src/%.cc
+	@mkdir -p $(@D)
+	$(CXX) $(CXXFLAGS_ALL) $(CV_CFLAGS) -c $< -o $@
+$(BUILD)/tests/%.o: tests/%.c
+	@mkdir -p $(@D)
+	$(CC) $(CFLAGS_ALL) -Itests $(APP_CFLAGS) -DDATA='"$(DATA)"' -c $< -o $@
+$(BUILD)/bench/%.o: bench/%.c
+	@mkdir -p $(@D)
+	$(CC) $(CFLAGS_ALL) -Itests $(APP_CFLAGS) -DDATA='"$(DATA)"' -c $< -o $@
+$(BUILD)/bench/%.o: bench/%.cc
+	@mkdir -p $(@D)
+	$(CXX) $(CXXFLAGS_ALL) $(CV_CFLAGS) -c $< -o $@
+
+# Only the application sees LCM, libconfig, Cairo, SDL and systemd.
+$(BUILD)/src/app/%.o: MODULE_CFLAGS = $(APP_CFLAGS)
+
+# Generated code warns under -Wextra: flags of its own.
+$(BUILD)/lcmtypes/.stamp: $(patsubst %,lcmtypes/%.lcm,$(LCM_TYPES))
+	@mkdir -p $(@D)
+	lcm-gen -c --c-cpath $(@D) --c-hpath $(@D) --cinclude lcmtypes $^
+	@touch $@
+$(BUILD)/lcmtypes/billiard_%.c: $(BUILD)/lcmtypes/.stamp ;
+$(BUILD)/lcmtypes/%.o: $(BUILD)/lcmtypes/%.c
+	$(CC) -std=gnu17 $(BASE) -w $(APP_CFLAGS) -c $< -o $@
+$(APP_O) $(patsubst %,$(BUILD)/src/app/main_%.o,$(PROGRAMS)) $(TEST_SHARED_O) \
+	$(patsubst %,$(BUILD)/tests/test_%.o,$(TESTS)) $(patsubst %,$(BUILD)/bench/bench_%.o,$(BENCHES)): | $(BUILD)/lcmtypes/.stamp
+
+link = $(CXX) $(BASE) $(LDFLAGS) -Wl,--as-needed -o $@ $(filter %.o,$^) -Wl,--start-group $(filter %.a,$^) -Wl,--end-group
+$(BUILD)/tests/test_%: $(BUILD)/tests/test_%.o $(TEST_SHARED_O) $(ARCHIVES)
+	$(link) $(TEST_LIBS) $(LIBS)
+$(BUILD)/bench/bench_%: $(BUILD)/bench/bench_%.o $(TEST_SHARED_O) $(ARCHIVES)
+	$(link) $(TEST_LIBS) $(LIBS)
+$(PROGRAM_BINS): $(BUILD)/%: $(BUILD)/src/app/main_%.o $(ARCHIVES)
+	$(link) $(LIBS)
+
+# ---- what people call ------------------------------------------------------------------------------------------------
+
+setup:
+	@scripts/setup
+
+demo: setup
+	+@$(MAKE) --no-print-directory -j$(JOBS) programs
+	@scripts/demo $(BUILD) $(INPUT)
+
+check: setup
+	+@$(MAKE) --no-print-directory check-built
+
+check-built: headers
+	+@$(MAKE) --no-print-directory -j$(JOBS) programs tests
+	@BUILD=$(BUILD) DATA=$(DATA) scripts/run-tests $(BUILD) $(addprefix test_,$(TESTS)) $(TEST_SCRIPTS)
+
+bench: setup
+	+@$(MAKE) --no-print-directory -j$(JOBS) programs $(BENCH_BINS)
+	@DATA=$(DATA) scripts/run-bench $(BUILD) $(BENCHES)
+
+headers:
+	@CC="$(CC)" BUILD=$(BUILD) scripts/check-headers
+
+clean:
+	rm -rf $(BUILD)
+
+-include $(shell test -d $(BUILD) && find $(BUILD) -name '*.d')
