@@ -1,0 +1,92 @@
+/* The configuration of one table: config/NAME.conf (libconfig). Every key has a unit and a range; the whole file is checked. */
+#ifndef BILLIARD_APP_CONFIG_H
+#define BILLIARD_APP_CONFIG_H
+
+#include "physics/model.h"
+#include "physics/table.h"
+#include "search/plan.h"
+#include "vision/camera.h"
+#include "vision/vision.h"
+
+enum { CONFIG_PATH_MAX = 256, CONFIG_SERVICE_MAX = 8 };
+
+/* Planner service and defaults of its requests. */
+struct config_planner {
+	int workers;			/* 0: cores - 1, at least 1 */
+	size_t memory;			/* bytes */
+	int depth, rails, balls, speeds, plans;
+	uint64_t budget_nodes;		/* of a request by infinity; 0 none */
+	double budget;			/* s; 0 none */
+	double sync_period, sync_window;	/* s, k and n of thesis 4.7 */
+};
+
+/* Controller. */
+struct config_infinity {
+	double still_distance;		/* m a ball may move and still rest, 0.0005 */
+	int still_frames;		/* frames in a row */
+	bool rules;			/* by the rules of snooker; false: any ball (thesis' infinity mode) */
+	double plan_timeout;		/* s without an answer until the request is repeated */
+	double animation_rate;		/* 1 real time */
+	double animation_pause;		/* s */
+};
+
+/* Projector: where table points land on its picture. */
+struct config_projector {
+	int width, height;		/* px */
+	double homography[9];		/* table m (x, y, 1) to px, row by row */
+	bool fullscreen;
+	char font[64];
+};
+
+/* Virtual table: light, noise, player. */
+struct config_virtual {
+	double noise;			/* 1 sigma of the sensor, grey levels */
+	double exposure;		/* 1 normal */
+	double projector_light;		/* share of full white that the projector adds to the cloth */
+	double frame_rate;		/* 1/s */
+	double error_angle;		/* rad, 1 sigma of the player */
+	double error_speed;		/* share, 1 sigma */
+	uint64_t seed;
+	double time_scale;		/* 1 real time, 5 five times as fast */
+	double think_time;		/* s the player looks at a proposal before playing */
+	double camera_height;		/* m above the markers' plane */
+	double camera_x, camera_y;	/* m, point below the camera, table frame */
+	double camera_tilt_x, camera_tilt_y;	/* rad */
+	int jpeg_quality;		/* 1..100 */
+};
+
+struct config_service {
+	char name[24];			/* "billiard-vision", ... */
+	char arguments[128];		/* added to the command line */
+	bool enabled;
+};
+
+struct config {
+	char path[CONFIG_PATH_MAX];	/* the file it came from */
+	char name[32];
+	struct table table;
+	struct model model;		/* what is shown */
+	char model_name[24];
+	struct cost_profile profile;	/* the chosen one of profiles */
+	struct camera_intrinsics camera;
+	struct marker_layout markers;
+	char colours[CONFIG_PATH_MAX];	/* colour parameter file, relative to the configuration */
+	char source[CONFIG_PATH_MAX];	/* frame source of billiard-vision */
+	double camera_rate;		/* CAMERA messages per second, 0 none */
+	double marker_interval, pose_keep;	/* s */
+	char bus[128];			/* LCM URL; LCM_DEFAULT_URL overrides */
+	struct config_planner planner;
+	struct config_infinity infinity;
+	struct config_projector projector;
+	struct config_virtual virtual_table;
+	struct config_service service[CONFIG_SERVICE_MAX];
+	int service_count;
+};
+
+/* Reads and checks a file. 0, or a negative errno and "file:line: key: found ..., allowed ..." in err; *config is untouched on failure. */
+int config_read(struct config *config, const char *path, char *err, size_t err_size);
+
+/* Path used when no -c is given: $BILLIARD_CONF, ./config/thesis-table.conf, then the installed one. Never NULL. */
+const char *config_default_path(void);
+
+#endif

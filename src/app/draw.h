@@ -1,0 +1,40 @@
+/* Draw lists: what the projector shows, in table metres. Builders for the pictures of a proposal. Pure. */
+#ifndef BILLIARD_APP_DRAW_H
+#define BILLIARD_APP_DRAW_H
+
+#include "lcmtypes/billiard_draw_list_t.h"
+#include "lcmtypes/billiard_plan_t.h"
+#include "physics/table.h"
+
+enum { DRAW_ITEM_MAX = 160, DRAW_POINT_MAX = 2048 };
+enum draw_kind { DRAW_POLYLINE, DRAW_OUTLINE, DRAW_FILLED, DRAW_RING, DRAW_DISC, DRAW_TEXT };
+
+/* What of a proposal is drawn (toggles of thesis 4.8). */
+struct draw_options {
+	bool halo;		/* rings around the balls */
+	bool other_paths;	/* dashed paths of the other balls */
+	bool table;		/* cushions and pockets */
+	bool info;		/* position and id beside each ball */
+};
+struct draw_options draw_options_default(void);
+
+void draw_clear(billiard_draw_list_t *list);
+/* Each adds one item; false when the list is full (nothing is added then). rgba 0xRRGGBBAA, lengths in m. */
+bool draw_polyline(billiard_draw_list_t *list, const vec2 *point, int count, double width, uint32_t rgba);
+bool draw_dashed(billiard_draw_list_t *list, const vec2 *point, int count, double width, uint32_t rgba);
+bool draw_ring(billiard_draw_list_t *list, vec2 centre, double radius, double width, uint32_t rgba);
+bool draw_disc(billiard_draw_list_t *list, vec2 centre, double radius, uint32_t rgba);
+bool draw_text(billiard_draw_list_t *list, vec2 at, double height, uint32_t rgba, const char *text);
+
+/* True when counts and indices are in range and all numbers finite: to be called on every list from the wire. */
+bool draw_check(const billiard_draw_list_t *list);
+
+/* One shot of a proposal: halos on the given balls, ghost ball, solid paths of cue and object ball, dashed paths of the others, speed and pocket
+ * as text. shot indexes plan->entries[entry].shots. table: for radius and pockets. */
+void draw_proposal(billiard_draw_list_t *list, const struct table *table, const billiard_plan_t *plan, int entry, int shot,
+		   const struct draw_options *options);
+/* Halos only (no proposal), and a line of text at the bottom (empty: none). */
+void draw_idle(billiard_draw_list_t *list, const struct table *table, const struct ball *ball, int count, const char *note,
+	       const struct draw_options *options);
+
+#endif

@@ -1,0 +1,20 @@
+/* Draw lists to pixels with Cairo, through the homography table -> picture. */
+#ifndef BILLIARD_APP_RENDER_H
+#define BILLIARD_APP_RENDER_H
+
+#include "app/config.h"
+#include "lcmtypes/billiard_animation_t.h"
+#include "lcmtypes/billiard_draw_list_t.h"
+
+struct render;	/* opaque: surface and font */
+/* 0, -EINVAL, -ENOMEM; *out NULL on failure. Caller destroys. */
+int render_create(struct render **out, const struct config_projector *projector, char *err, size_t err_size);
+void render_destroy(struct render *render);	/* NULL is fine */
+/* Draws the list, and over it the animated balls at time t (s since the strike) unless animation is NULL. Black where nothing is. */
+void render_draw(struct render *render, const billiard_draw_list_t *list, const billiard_animation_t *animation, double t);
+/* The picture: 32-bit xRGB in native order, rows from the top; borrowed until the next render_draw(). */
+const uint32_t *render_pixels(const struct render *render, int *width, int *height, int *stride);
+/* 0 or a negative errno with reason. */
+int render_write_png(struct render *render, const char *path, char *err, size_t err_size);
+
+#endif
