@@ -1,0 +1,6 @@
+#ifndef BILLIARD_APP_VERSION_H
+#define BILLIARD_APP_VERSION_H
+
+#define BILLIARD_VERSION "0.1"
+
+#endif
