@@ -15,17 +15,17 @@ JOBS ?= $(shell nproc)
 
 # ---- sources: every file by hand -------------------------------------------------------------------------------------
 
-PHYSICS :=
+PHYSICS := ball event model table
 SEARCH :=
-VISION :=
-VISION_CV :=
+VISION := camera linear pose reason
+VISION_CV := capture_cv image_io_cv markers_cv
 # app: what the programs share
 APP :=
 # programs: src/app/main_NAME.c becomes build/NAME
 PROGRAMS :=
 # tests/test_NAME.c each; tests/NAME.c shared by them
 TESTS :=
-TEST_SHARED := harness
+TEST_SHARED := harness scenes
 # tests that are scripts: tests/NAME.sh, called with the build folder
 TEST_SCRIPTS :=
 # bench/bench_NAME.c each

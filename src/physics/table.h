@@ -4,6 +4,7 @@
 #define BILLIARD_PHYSICS_TABLE_H
 
 #include <stddef.h>
+#include <stdint.h>
 
 #include "physics/ball.h"
 
@@ -12,7 +13,9 @@ enum { CUSHION_MAX = 32, JAW_MAX = 32, POCKET_MAX = 6, SPOT_COUNT = 8 };
 /* One straight cushion: the nose line from a to b. Balls are on the side of normal. */
 struct cushion {
 	vec2 a, b;		/* m, ends of the nose line */
-	vec2 normal;		/* unit, towards the bed; computed by table_finish() from bed_side */
+	vec2 normal;		/* unit, towards the side of the bed's centre; computed by table_finish() */
+	vec2 along;		/* unit, from a to b; computed by table_finish() */
+	double span;		/* m, distance of a and b; computed by table_finish() */
 	double nose_height;	/* m above the bed */
 	bool two_sided;		/* a ball may touch it from either side */
 	bool main_rail;		/* one of the six long noses (mirrors of the search); false: a pocket's jaw */
@@ -31,6 +34,13 @@ struct pocket {
 	double radius;		/* m, > 0 */
 	vec2 normal;		/* unit, into the bed; the search's angle cost uses it */
 	char name[16];		/* "BOTTOM-LEFT", ... */
+};
+
+/* The neighbourhood of a pocket: a ball whose centre stays outside the box touches none of the jaws, jaw cushions and
+ * pockets in the masks (bit i: index i). Computed by table_finish(). */
+struct table_region {
+	vec2 low, high;		/* m */
+	uint32_t cushions, jaws, pockets;
 };
 
 /* Material and contact constants. Every model reads only its own. */
@@ -64,14 +74,16 @@ struct table {
 	int jaw_count;
 	struct pocket pocket[POCKET_MAX];
 	int pocket_count;
+	struct table_region region[POCKET_MAX];
+	int region_count;
 	vec2 spot[SPOT_COUNT];	/* m; by colour; [COLOUR_WHITE] and [COLOUR_RED] are unused */
 	vec2 baulk_d_centre;	/* m; middle of the D (brown spot) */
 	double baulk_d_radius;	/* m */
 	struct material material;
 };
 
-/* Checks ranges, computes normals (towards the origin side unless two_sided).
- * Returns 0, or -EINVAL with the reason in err. */
+/* Checks ranges, computes normals and regions, and adds a sharp tip (a jaw of radius 0) to each end of a cushion that no
+ * jaw covers, so that no ball slips through a corner. May be called again. Returns 0, or -EINVAL with the reason in err. */
 int table_finish(struct table *table, char *err, size_t err_size);
 
 /* Pocket of that name, -1 when there is none. */
