@@ -15,12 +15,12 @@ JOBS ?= $(shell nproc)
 
 # ---- sources: every file by hand -------------------------------------------------------------------------------------
 
-PHYSICS := ball event model table
+PHYSICS := ball event model table contact_ball_real contact_stronge contact_mathavan
 SEARCH :=
-VISION := camera linear pose reason
+VISION := camera linear pose reason scan
 VISION_CV := capture_cv image_io_cv markers_cv
 # app: what the programs share
-APP :=
+APP := draw draw_field draw_path draw_proposal render
 # programs: src/app/main_NAME.c becomes build/NAME
 PROGRAMS :=
 # tests/test_NAME.c each; tests/NAME.c shared by them

@@ -1,0 +1,27 @@
+/* Contact laws of the realistic models: what one contact does to velocity and spin. Pure functions: they change vel and spin
+ * only, the caller sets the phase. All are exact about symmetry: mirrored or turned input gives mirrored or turned output
+ * up to rounding. Constants are those of table->material. */
+#ifndef BILLIARD_PHYSICS_CONTACT_REAL_H
+#define BILLIARD_PHYSICS_CONTACT_REAL_H
+
+#include "physics/table.h"
+
+/* Equal balls with restitution e_ball and Coulomb friction mu = a + b exp(-c u), u the slip speed at the contact in m/s
+ * (Alciatore TP A.5, A.6, A.14): throw and transfer of spin. Friction acts until the slip has ended, at most. Vertical
+ * velocity, which the cloth and gravity take up at once, is dropped. Precondition: the balls approach (asserted). */
+void contact_ball_frictional(const struct table *table, struct ball *a, struct ball *b);
+
+/* Compliant impact on a cushion (Stronge 2000, ch. 5): normal and tangential springs with frequency ratio stronge_omega in
+ * (1, 2), restitution e_cushion in (0, 1], Coulomb friction mu_cushion >= 0. normal: unit, from the cushion towards the ball.
+ * The contact lies on the line from the ball's centre to a nose one radius away at nose_height (m above the bed, in (0, 2 r)):
+ * its angle above the horizontal has the tangent nose_height / r - 1. The bed's reaction is left out, vertical velocity is
+ * dropped. Precondition: the ball approaches (asserted). */
+void contact_cushion_stronge(const struct table *table, vec2 normal, double nose_height, struct ball *ball);
+
+/* Impact on a cushion nose at nose_height, in (0, 2 r), pressing the ball on the cloth (Mathavan, Jackson, Parkin 2010):
+ * normal impulse integrated with friction at nose (mu_cushion) and cloth (mu_slide), restitution e_cushion of the work
+ * done at the nose. Sticking at either contact is part of the law and handled as a mode of its own. The integration
+ * leaves less than 1e-7 of the ball's speed. Precondition: the ball approaches (asserted). */
+void contact_cushion_mathavan(const struct table *table, vec2 normal, double nose_height, struct ball *ball);
+
+#endif
