@@ -8,7 +8,7 @@
 #include "vision/camera.h"
 #include "vision/vision.h"
 
-enum { CONFIG_PATH_MAX = 256, CONFIG_SERVICE_MAX = 8 };
+enum { CONFIG_PATH_MAX = 256, CONFIG_SERVICE_MAX = 8, CONFIG_PROFILE_MAX = 8 };
 
 /* Planner service and defaults of its requests. */
 struct config_planner {
@@ -67,10 +67,12 @@ struct config {
 	struct table table;
 	struct model model;		/* what is shown */
 	char model_name[24];
+	struct cost_profile profiles[CONFIG_PROFILE_MAX];
+	int profile_count;
 	struct cost_profile profile;	/* the chosen one of profiles */
 	struct camera_intrinsics camera;
 	struct marker_layout markers;
-	char colours[CONFIG_PATH_MAX];	/* colour parameter file, relative to the configuration */
+	char colours[CONFIG_PATH_MAX];	/* colour parameter file; written relative to the configuration, here as it is to be opened */
 	char source[CONFIG_PATH_MAX];	/* frame source of billiard-vision */
 	double camera_rate;		/* CAMERA messages per second, 0 none */
 	double marker_interval, pose_keep;	/* s */
@@ -83,8 +85,12 @@ struct config {
 	int service_count;
 };
 
-/* Reads and checks a file. 0, or a negative errno and "file:line: key: found ..., allowed ..." in err; *config is untouched on failure. */
-int config_read(struct config *config, const char *path, char *err, size_t err_size);
+/* Reads and checks a file. 0, or a negative errno and "file:line: key: found ..., allowed ..." in err; *config is untouched on failure.
+ * (Not "config_read": libconfig exports that name.) */
+int config_load(struct config *config, const char *path, char *err, size_t err_size);
+
+/* Profile of that name among config->profiles, NULL when there is none. */
+const struct cost_profile *config_profile(const struct config *config, const char *name);
 
 /* Path used when no -c is given: $BILLIARD_CONF, ./config/thesis-table.conf, then the installed one. Never NULL. */
 const char *config_default_path(void);

@@ -73,6 +73,21 @@ static int check_material(const struct material *m, char *err, size_t err_size)
 	return 0;
 }
 
+/* A point that balls may come from: the bed's centre, or for a jaw its pocket (a jaw of a long rail has the bed's centre behind it). */
+static vec2 playing_side(const struct table *t, const struct cushion *c)
+{
+	vec2 middle = vec2_scale(vec2_add(c->a, c->b), 0.5), nearest = {0, 0};
+	double best = INFINITY;
+	for (int i = 0; !c->main_rail && i < t->pocket_count; i++) {
+		double distance = vec2_dist(middle, t->pocket[i].centre);
+		if (distance < best) {
+			best = distance;
+			nearest = t->pocket[i].centre;
+		}
+	}
+	return nearest;
+}
+
 static int finish_cushion(struct table *t, int i, char *err, size_t err_size)
 {
 	struct cushion *c = &t->cushion[i];
@@ -83,10 +98,10 @@ static int finish_cushion(struct table *t, int i, char *err, size_t err_size)
 		return refuse(err, err_size, "cushion %d is shorter than 1 mm", i);
 	c->along = vec2_scale(vec2_sub(c->b, c->a), 1 / c->span);
 	c->normal = vec2_perp(c->along);
-	double centre_side = -vec2_dot(c->normal, c->a);
-	if (fabs(centre_side) < 1e-6 && !c->two_sided)
-		return refuse(err, err_size, "cushion %d points at the bed's centre: mark it two-sided", i);
-	if (centre_side < 0)
+	double side = vec2_dot(c->normal, vec2_sub(playing_side(t, c), c->a));
+	if (fabs(side) < 1e-6 && !c->two_sided)
+		return refuse(err, err_size, "cushion %d has no playing side: mark it two-sided", i);
+	if (side < 0)
 		c->normal = vec2_scale(c->normal, -1);
 	return 0;
 }

@@ -48,7 +48,7 @@ struct material {
 	double gravity;		/* m/s^2 */
 	double mu_slide;	/* cloth, sliding */
 	double mu_roll;		/* cloth, rolling resistance: deceleration mu_roll g */
-	double mu_spin;		/* m: vertical spin decays by 5 mu_spin g / (2 r^2) rad/s^2; pooltool's u_sp */
+	double mu_spin;		/* m: vertical spin decays by 5 mu_spin g / (2 r^2) rad/s^2; pooltool's u_sp times r */
 
 	/* model "thesis" */
 	double loss_ball;	/* share of the speed lost at a ball contact, 4.43 */

@@ -1,0 +1,49 @@
+/* Reads libconfig settings into a struct as a table of keys says, checking type, range, missing and unknown keys. */
+#ifndef BILLIARD_APP_CONFIG_READER_H
+#define BILLIARD_APP_CONFIG_READER_H
+
+#include <libconfig.h>
+#include <stddef.h>
+
+enum config_type {
+	CONFIG_NUMBER,	/* double */
+	CONFIG_WHOLE,	/* int */
+	CONFIG_COUNT64,	/* uint64_t */
+	CONFIG_FLAG,	/* bool */
+	CONFIG_TEXT,	/* char[size] */
+	CONFIG_NUMBERS,	/* size doubles in a row (a vec2 is two) */
+	CONFIG_SECTION,	/* group of keys, offsets from the same base */
+	CONFIG_LIST	/* list of groups, each into an element of size bytes */
+};
+
+/* Unit of a number in the file; inside it is SI. */
+enum config_unit {
+	UNIT_NONE, UNIT_MM, UNIT_MM_S, UNIT_MM_S2, UNIT_DEGREE, UNIT_MS, UNIT_SECOND, UNIT_HERTZ, UNIT_KG, UNIT_PX, UNIT_GREY, UNIT_S_M,
+	UNIT_COUNT
+};
+
+/* One key. The end of a table has no name. */
+struct config_key {
+	const char *name;
+	enum config_type type;
+	enum config_unit unit;
+	size_t offset;			/* bytes from the base */
+	double min, max;		/* in the file's unit; of a text or list: its length */
+	size_t size;			/* TEXT: bytes; NUMBERS: how many; LIST: bytes of an element */
+	size_t count_offset;		/* LIST: an int for the number of elements */
+	const struct config_key *keys;	/* SECTION, LIST */
+};
+
+struct config_reader {
+	const char *path;	/* of the file, for messages */
+	char *err;		/* borrowed */
+	size_t err_size;
+};
+
+/* All keys of the table from the group into base. 0, or -EINVAL with "file:line: key: found ..., allowed ..." in err. */
+int config_reader_group(struct config_reader *reader, const config_setting_t *group, const struct config_key *keys, void *base);
+
+/* Writes such a message for a setting whose value fails a check of the caller's. Returns -EINVAL. */
+int config_reader_fail(struct config_reader *reader, const config_setting_t *setting, const char *found, const char *allowed);
+
+#endif
