@@ -9,6 +9,8 @@ SAN ?=
 BUILD ?= build$(if $(SAN),/san-$(subst $(comma),-,$(SAN)))
 PREFIX ?= /usr/local
 DESTDIR ?=
+# where installed configurations live: /etc/billiard for PREFIX=/usr
+SYSCONFDIR ?= $(if $(filter /usr,$(PREFIX)),,$(PREFIX))/etc/billiard
 DATA ?= ../shared/data
 INPUT ?=
 JOBS ?= $(shell nproc)
@@ -20,11 +22,11 @@ SEARCH :=
 VISION := camera linear pose reason scan
 VISION_CV := capture_cv image_io_cv markers_cv
 # app: what the programs share
-APP := draw draw_field draw_path draw_proposal render
+APP := text_file config config_reader config_table position draw draw_field draw_path draw_proposal render
 # programs: src/app/main_NAME.c becomes build/NAME
 PROGRAMS :=
 # tests/test_NAME.c each; tests/NAME.c shared by them
-TESTS :=
+TESTS := draw
 TEST_SHARED := harness scenes
 # tests that are scripts: tests/NAME.sh, called with the build folder
 TEST_SCRIPTS :=
@@ -99,7 +101,7 @@ $(BUILD)/bench/%.o: bench/%.cc
 	$(CXX) $(CXXFLAGS_ALL) $(CV_CFLAGS) -c $< -o $@
 
 # Only the application sees LCM, libconfig, Cairo, SDL and systemd.
-$(BUILD)/src/app/%.o: MODULE_CFLAGS = $(APP_CFLAGS)
+$(BUILD)/src/app/%.o: MODULE_CFLAGS = $(APP_CFLAGS) -DBILLIARD_CONFIG_DIR='"$(SYSCONFDIR)"'
 
 # Generated code warns under -Wextra: flags of its own.
 $(BUILD)/lcmtypes/.stamp: $(patsubst %,lcmtypes/%.lcm,$(LCM_TYPES))
