@@ -32,42 +32,54 @@ double process_seconds(void *unused)
 
 /* ---- command line --------------------------------------------------------------------------------------------------- */
 
+static void print_usage(const char *name, bool is_vision)
+{
+	printf("usage: %s [-c CONF] [--bus URL]%s\n", name,
+	       is_vision ? " [--source v4l2:/dev/videoN|dir:FOLDER|file:VIDEO|lcm:CHANNEL] [--hold SECONDS]" : "");
+}
+
+static int parse_hold(const char *text, double *out)
+{
+	char *rest;
+	double value = strtod(text, &rest);
+	if (rest == text || *rest || !(value > 0 && value <= 3600)) {
+		fprintf(stderr, "billiard-vision: --hold: found \"%s\", allowed seconds in 0..3600\n", text);
+		return -EINVAL;
+	}
+	*out = value;
+	return 0;
+}
+
 int process_parse(struct process_options *out, const char *name, int argc, char **argv)
 {
-	enum { OPT_BUS = 256, OPT_SOURCE };
-	static const struct option table[] = {
-		{"config", required_argument, NULL, 'c'},   {"bus", required_argument, NULL, OPT_BUS},
-		{"source", required_argument, NULL, OPT_SOURCE}, {"help", no_argument, NULL, 'h'},
-		{"version", no_argument, NULL, 'v'},	    {NULL, 0, NULL, 0},
+	enum { OPT_BUS = 256, OPT_SOURCE, OPT_HOLD };
+	static const struct option all[] = {
+		{"source", required_argument, NULL, OPT_SOURCE}, {"hold", required_argument, NULL, OPT_HOLD},
+		{"config", required_argument, NULL, 'c'},	 {"bus", required_argument, NULL, OPT_BUS},
+		{"help", no_argument, NULL, 'h'},		 {"version", no_argument, NULL, 'v'},
+		{NULL, 0, NULL, 0},
 	};
-	*out = (struct process_options){.config = config_default_path()};
-	bool has_source = strcmp(name, "billiard-vision") == 0;
+	enum { VISION_ONLY = 2 };
+	*out = (struct process_options){.config = config_default_path(), .hold = 2};
+	bool is_vision = strcmp(name, "billiard-vision") == 0;
 	int c;
-	while ((c = getopt_long(argc, argv, "c:h", table, NULL)) != -1) {
-		switch (c) {
-		case 'c':
+	while ((c = getopt_long(argc, argv, "c:h", is_vision ? all : all + VISION_ONLY, NULL)) != -1) {
+		if (c == 'c')
 			out->config = optarg;
-			break;
-		case OPT_BUS:
+		else if (c == OPT_BUS)
 			out->bus = optarg;
-			break;
-		case OPT_SOURCE:
-			if (!has_source) {
-				fprintf(stderr, "%s: --source is an option of billiard-vision\n", name);
-				return -EINVAL;
-			}
+		else if (c == OPT_SOURCE)
 			out->source = optarg;
-			break;
-		case 'h':
-			printf("usage: %s [-c CONF] [--bus URL]%s\n", name,
-			       has_source ? " [--source v4l2:/dev/videoN|dir:FOLDER|file:VIDEO|lcm:CHANNEL]" : "");
-			return 1;
-		case 'v':
-			printf("%s %s\n", name, BILLIARD_VERSION);
-			return 1;
-		default:
+		else if (c == OPT_HOLD && parse_hold(optarg, &out->hold) < 0)
 			return -EINVAL;
-		}
+		else if (c == '?')
+			return -EINVAL;
+		if (c == 'h')
+			print_usage(name, is_vision);
+		if (c == 'v')
+			printf("%s %s\n", name, BILLIARD_VERSION);
+		if (c == 'h' || c == 'v')
+			return 1;
 	}
 	if (optind < argc) {
 		fprintf(stderr, "%s: unexpected argument \"%s\"\n", name, argv[optind]);
@@ -217,7 +229,7 @@ int process_init(struct process *process, const char *name, const struct process
 {
 	*process = (struct process){.name = name};
 	char err[PROCESS_ERROR_SIZE];
-	int r = config_read(config, options->config, err, sizeof err);
+	int r = config_load(config, options->config, err, sizeof err);
 	if (r < 0) {
 		fprintf(stderr, "%s: %s\n", name, err);
 		return r;
