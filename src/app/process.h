@@ -14,6 +14,7 @@ struct process_options {
 	const char *config;	/* -c FILE; the default path when not given; borrowed from argv */
 	const char *bus;	/* --bus URL, NULL: LCM_DEFAULT_URL or the configuration's */
 	const char *source;	/* --source, billiard-vision only; NULL: the configuration's */
+	double hold;		/* --hold, billiard-vision only: s each photograph of a folder is shown */
 };
 
 struct process {

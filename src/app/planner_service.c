@@ -1,0 +1,304 @@
+#include "app/planner_service.h"
+
+#include <errno.h>
+#include <pthread.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+#include <sys/eventfd.h>
+#include <unistd.h>
+
+#include "app/bus.h"
+#include "app/plan_message.h"
+#include "app/process.h"
+
+static const double IMPROVEMENT_PERIOD = 0.1;	/* s between improved answers at least */
+
+/* Answers on their way to the loop. A request makes at most one final answer; improvements replace each other. */
+enum { ANSWER_MAX = 4 };
+
+struct planner_service {
+	const struct config *config;	/* borrowed */
+	struct planner *planner;	/* owned */
+	pthread_t thread;
+	bool thread_runs;
+	int descriptor;			/* eventfd: answers wait */
+	struct trace_entry *scratch;	/* owned, the search thread's */
+	billiard_plan_t draft;		/* the search thread's */
+
+	pthread_mutex_t lock;		/* of all below */
+	pthread_cond_t wake;
+	bool stop;
+	bool has_request, busy;
+	int64_t present_id;		/* newest id taken */
+	billiard_plan_request_t request;
+	double request_time;		/* s, monotonic */
+	billiard_plan_t answer[ANSWER_MAX];
+	int answer_count;
+	bool has_last;
+	billiard_plan_t last;		/* the last answer given, for repeated requests */
+	struct planner_service_figures figures;
+};
+
+/* What one search needs besides the service. */
+struct search {
+	struct planner_service *service;
+	int64_t id;
+	int32_t sequence;
+	double request_time, started, last_sent;
+};
+
+/* Hands a plan to the loop. An improvement still waiting is replaced; a final answer never is. Locked by the caller. */
+static void post(struct planner_service *service, const billiard_plan_t *plan)
+{
+	int at = service->answer_count;
+	if (at > 0 && !service->answer[at - 1].final && service->answer[at - 1].request_id == plan->request_id)
+		at--;
+	if (at == ANSWER_MAX) {
+		/* The loop has not kept up with finals of cancelled requests: the oldest goes. */
+		memmove(&service->answer[0], &service->answer[1], (ANSWER_MAX - 1) * sizeof service->answer[0]);
+		at--;
+	}
+	service->answer[at] = *plan;
+	service->answer_count = at + 1;
+	uint64_t one = 1;
+	if (write(service->descriptor, &one, sizeof one) < 0)
+		return;	/* the counter is full: the loop is awake anyway */
+}
+
+static void send_plan(struct search *search, bool final)
+{
+	struct planner_service *service = search->service;
+	billiard_plan_t *plan = &service->draft;
+	double now = process_seconds(NULL);
+	plan->utime = process_utime();
+	plan->sequence = search->sequence++;
+	plan->final = final;
+	plan->seconds = now - search->started;
+	pthread_mutex_lock(&service->lock);
+	if (plan->sequence == 0)
+		service->figures.last_first = now - search->request_time;
+	if (final) {
+		service->figures.last_final = now - search->request_time;
+		service->figures.nodes += plan->nodes;
+		service->figures.sims += plan->sims;
+		service->figures.cancelled += plan->status == PLAN_MESSAGE_CANCELLED;
+	}
+	service->last = *plan;
+	service->has_last = true;
+	post(service, plan);
+	pthread_mutex_unlock(&service->lock);
+	search->last_sent = now;
+}
+
+static void on_progress(void *context, const struct plan_result *result)
+{
+	struct search *search = context;
+	struct planner_service *service = search->service;
+	/* A cancel that came between taking the request and the search's begin would else be lost. */
+	pthread_mutex_lock(&service->lock);
+	if (service->present_id != search->id)
+		planner_cancel(service->planner);
+	pthread_mutex_unlock(&service->lock);
+	if (search->sequence > 0 && process_seconds(NULL) - search->last_sent < IMPROVEMENT_PERIOD)
+		return;
+	plan_message_fill(&service->draft, result, &service->config->table, &service->config->model, service->scratch);
+	send_plan(search, false);
+}
+
+static void run_search(struct planner_service *service, const billiard_plan_request_t *message, double request_time)
+{
+	char err[sizeof service->draft.reason] = "";
+	struct search search = {service, message->id, 0, request_time, process_seconds(NULL), 0};
+	struct plan_request request;
+	struct plan_result result = {0};
+	plan_message_begin(&service->draft, message);
+	int r = plan_request_from_message(&request, message, &service->config->table, err, sizeof err);
+	if (r == 0)
+		r = planner_run(service->planner, &request, on_progress, &search, &result, err, sizeof err);
+	if (r == -EINVAL) {
+		service->draft.status = PLAN_MESSAGE_REFUSED;
+		service->draft.entry_count = 0;
+		pthread_mutex_lock(&service->lock);
+		service->figures.refused++;
+		pthread_mutex_unlock(&service->lock);
+	} else {
+		plan_message_fill(&service->draft, &result, &service->config->table, &service->config->model, service->scratch);
+		if (r == -ECANCELED) {
+			service->draft.status = PLAN_MESSAGE_CANCELLED;
+			snprintf(err, sizeof err, "replaced by a newer request or cancelled");
+		} else if (service->draft.status == PLAN_MESSAGE_NONE) {
+			snprintf(err, sizeof err, "no shot found");
+		}
+	}
+	bus_set_text(service->draft.reason, sizeof service->draft.reason, err);
+	send_plan(&search, true);
+}
+
+static void *search_thread(void *context)
+{
+	struct planner_service *service = context;
+	billiard_plan_request_t request;
+	pthread_mutex_lock(&service->lock);
+	while (!service->stop) {
+		if (!service->has_request) {
+			pthread_cond_wait(&service->wake, &service->lock);
+			continue;
+		}
+		request = service->request;
+		double request_time = service->request_time;
+		service->has_request = false;
+		service->busy = true;
+		pthread_mutex_unlock(&service->lock);
+		run_search(service, &request, request_time);
+		pthread_mutex_lock(&service->lock);
+		service->busy = false;
+	}
+	pthread_mutex_unlock(&service->lock);
+	return NULL;
+}
+
+int planner_service_create(struct planner_service **out, const struct config *config, char *err, size_t err_size)
+{
+	*out = NULL;
+	struct planner_service *service = calloc(1, sizeof *service);
+	if (!service) {
+		snprintf(err, err_size, "out of memory");
+		return -ENOMEM;
+	}
+	service->config = config;
+	pthread_mutex_init(&service->lock, NULL);
+	pthread_cond_init(&service->wake, NULL);
+	service->descriptor = eventfd(0, EFD_CLOEXEC | EFD_NONBLOCK);
+	service->scratch = malloc(PLAN_TRACE_MAX * sizeof service->scratch[0]);
+	long cores = sysconf(_SC_NPROCESSORS_ONLN);
+	struct planner_def def = planner_def_default();
+	def.table = &config->table;
+	def.model = config->model;
+	def.profile = config->profile;
+	def.workers = config->planner.workers ? config->planner.workers : cores > 2 ? (int)cores - 1 : 1;
+	if (def.workers > PLAN_WORKERS_MAX)
+		def.workers = PLAN_WORKERS_MAX;
+	if (config->planner.memory)
+		def.memory = config->planner.memory;
+	def.now = process_seconds;
+	int r = service->descriptor < 0 ? -errno : !service->scratch ? -ENOMEM : planner_create(&service->planner, &def);
+	if (r == 0)
+		r = -pthread_create(&service->thread, NULL, search_thread, service);
+	if (r < 0) {
+		snprintf(err, err_size, "planner: %s", strerror(-r));
+		planner_service_destroy(service);
+		return r;
+	}
+	service->thread_runs = true;
+	*out = service;
+	return 0;
+}
+
+void planner_service_destroy(struct planner_service *service)
+{
+	if (!service)
+		return;
+	if (service->thread_runs) {
+		pthread_mutex_lock(&service->lock);
+		service->stop = true;
+		service->has_request = false;
+		planner_cancel(service->planner);
+		pthread_cond_signal(&service->wake);
+		pthread_mutex_unlock(&service->lock);
+		pthread_join(service->thread, NULL);
+	}
+	planner_destroy(service->planner);
+	if (service->descriptor >= 0)
+		close(service->descriptor);
+	pthread_cond_destroy(&service->wake);
+	pthread_mutex_destroy(&service->lock);
+	free(service->scratch);
+	free(service);
+}
+
+int planner_service_descriptor(const struct planner_service *service)
+{
+	return service->descriptor;
+}
+
+/* A request that never began still ends with a final answer. Locked by the caller. */
+static void answer_unstarted(struct planner_service *service)
+{
+	static const char WHY[] = "replaced by a newer request or cancelled";
+	/* answer[] is large: build it in place of the next slot through post(). */
+	billiard_plan_t *plan = malloc(sizeof *plan);
+	if (!plan)
+		return;
+	plan_message_begin(plan, &service->request);
+	plan->utime = process_utime();
+	plan->final = 1;
+	plan->status = PLAN_MESSAGE_CANCELLED;
+	bus_set_text(plan->reason, sizeof plan->reason, WHY);
+	post(service, plan);
+	free(plan);
+	service->figures.cancelled++;
+	service->has_request = false;
+}
+
+bool planner_service_request(struct planner_service *service, const billiard_plan_request_t *request)
+{
+	bool accepted = true;
+	pthread_mutex_lock(&service->lock);
+	if (request->id < service->present_id) {
+		accepted = false;
+	} else if (request->id == service->present_id) {
+		/* Asked again: it runs, or its last answer was lost. */
+		if (!service->busy && !service->has_request && service->has_last && service->last.request_id == request->id)
+			post(service, &service->last);
+	} else {
+		if (service->has_request)
+			answer_unstarted(service);
+		if (service->busy)
+			planner_cancel(service->planner);
+		service->figures.requests++;
+		service->present_id = request->id;
+		service->request = *request;
+		service->request_time = process_seconds(NULL);
+		service->has_request = true;
+		pthread_cond_signal(&service->wake);
+	}
+	pthread_mutex_unlock(&service->lock);
+	return accepted;
+}
+
+void planner_service_cancel(struct planner_service *service, int64_t id)
+{
+	pthread_mutex_lock(&service->lock);
+	if (id == service->present_id) {
+		if (service->has_request)
+			answer_unstarted(service);
+		else if (service->busy)
+			planner_cancel(service->planner);
+	}
+	pthread_mutex_unlock(&service->lock);
+}
+
+bool planner_service_answer(struct planner_service *service, billiard_plan_t *out)
+{
+	uint64_t drop;
+	pthread_mutex_lock(&service->lock);
+	bool any = service->answer_count > 0;
+	if (any) {
+		*out = service->answer[0];
+		service->answer_count--;
+		memmove(&service->answer[0], &service->answer[1], (size_t)service->answer_count * sizeof service->answer[0]);
+	} else if (read(service->descriptor, &drop, sizeof drop) < 0) {
+		any = false;	/* nothing to reset */
+	}
+	pthread_mutex_unlock(&service->lock);
+	return any;
+}
+
+void planner_service_figures(struct planner_service *service, struct planner_service_figures *out)
+{
+	pthread_mutex_lock(&service->lock);
+	*out = service->figures;
+	out->busy = service->busy;
+	pthread_mutex_unlock(&service->lock);
+}
