@@ -26,7 +26,7 @@ APP := text_file config config_reader config_table position draw draw_field draw
 # programs: src/app/main_NAME.c becomes build/NAME
 PROGRAMS :=
 # tests/test_NAME.c each; tests/NAME.c shared by them
-TESTS := draw
+TESTS := draw render
 TEST_SHARED := harness scenes
 # tests that are scripts: tests/NAME.sh, called with the build folder
 TEST_SCRIPTS :=
