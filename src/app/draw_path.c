@@ -7,7 +7,7 @@ static const double FLATNESS = 0.001;
 /* Points closer than this to the last one are left out, m. */
 static const double SPACING = 0.0005;
 static const double TIME_MAX = 600;	/* s: no shot lasts longer */
-enum { PIECES_MAX = 24 };
+enum { DEPTH_MAX = 6 };
 
 static bool keyframe_ok(const billiard_keyframe_t *key)
 {
@@ -28,15 +28,17 @@ static void add(struct draw_path *path, vec2 point)
 		path->point[path->count++] = point;
 }
 
-/* Chords of a parabola over dt lie |a across the chord| dt^2 / 8 from it at most. */
-static void add_arc(struct draw_path *path, const billiard_keyframe_t *key, double from, double to)
+/* Halves the time until the chord lies close enough: over dt it lies |a across the chord| dt^2 / 8 from the parabola at most. */
+static void add_arc(struct draw_path *path, const billiard_keyframe_t *key, double from, double to, int depth)
 {
-	vec2 chord = vec2_unit(vec2_sub(keyframe_at(key, to), keyframe_at(key, from)));
+	vec2 end = keyframe_at(key, to), chord = vec2_unit(vec2_sub(end, keyframe_at(key, from)));
 	double across = fabs(vec2_cross(chord, (vec2){key->ax, key->ay}));
-	int pieces = (int)fmin(PIECES_MAX, ceil((to - from) * sqrt(across / (8 * FLATNESS))));
-	pieces = pieces < 1 ? 1 : pieces;
-	for (int i = 1; i <= pieces; i++)
-		add(path, keyframe_at(key, from + (to - from) * i / pieces));
+	if (across * (to - from) * (to - from) / 8 <= FLATNESS || depth == DEPTH_MAX) {
+		add(path, end);
+		return;
+	}
+	add_arc(path, key, from, (from + to) / 2, depth + 1);
+	add_arc(path, key, (from + to) / 2, to, depth + 1);
 }
 
 static void add_keyframe(struct draw_path *path, const billiard_keyframe_t *key)
@@ -46,10 +48,10 @@ static void add_keyframe(struct draw_path *path, const billiard_keyframe_t *key)
 	vec2 vel = {key->vx, key->vy}, acc = {key->ax, key->ay};
 	double turn = vec2_norm2(acc) > 0 ? -vec2_dot(vel, acc) / vec2_norm2(acc) : 0;
 	if (turn > 0 && turn < span) {
-		add_arc(path, key, 0, turn);
-		add_arc(path, key, turn, span);
+		add_arc(path, key, 0, turn, 0);
+		add_arc(path, key, turn, span, 0);
 	} else {
-		add_arc(path, key, 0, span);
+		add_arc(path, key, 0, span, 0);
 	}
 }
 
