@@ -18,8 +18,8 @@ JOBS ?= $(shell nproc)
 # ---- sources: every file by hand -------------------------------------------------------------------------------------
 
 PHYSICS := ball event model table contact_ball_real contact_stronge contact_mathavan
-SEARCH :=
-VISION := camera linear pose reason scan
+SEARCH := candidate cost frontier geometry plan play pool request respot rules safety shot step tolerance
+VISION := camera detect fit linear outline pose reason scan seeds
 VISION_CV := capture_cv image_io_cv markers_cv
 # app: what the programs share
 APP := text_file config config_reader config_table position draw draw_field draw_path draw_proposal render

@@ -24,6 +24,8 @@ struct cost_profile {
 	double cue_room;		/* m behind the cue ball */
 	double sigma_angle, sigma_speed;	/* player's error, rad and share of the speed (1 sigma) */
 	bool rank_by_success;		/* false: the thesis' cost */
+	bool program_speed;		/* start speeds by 4.33 for every leg, as the thesis' program; false: both branches */
+	bool keep_flukes;		/* keep legal pots that are not the intended one, named by what falls, as that program does */
 };
 /* The constants of the thesis' program (errata.md, last tables). */
 struct cost_profile cost_profile_thesis(void);
@@ -47,9 +49,10 @@ struct plan_request {
 	int balls;		/* balls in a chain at most, 1..PLAN_CHAIN_MAX - 1 (1 = direct) */
 	int speeds;		/* start speeds tried, >= 1 */
 	int plans;		/* wanted, 1..PLAN_MAX */
+	int tolerances;		/* of so many of the best plans tolerance and success are found, 0..PLAN_MAX; costs some 40 simulations a shot */
 	struct plan_budget budget;
 };
-/* Direct and via one ball, no cushions, one shot, one speed, 10 plans, no budget. */
+/* Direct and via one ball, no cushions, one shot, one speed, 10 plans, tolerance of one, no budget. */
 struct plan_request plan_request_default(void);
 
 struct plan_shot {

@@ -1,0 +1,180 @@
+#include "search/candidate.h"
+
+#include <assert.h>
+
+#include "physics/inverse.h"
+
+struct node candidate_root(const struct scene *scene, int pocket)
+{
+	const struct pocket *p = &scene->table->pocket[pocket];
+	return (struct node){
+		.speed = scene->profile->pocket_speed,
+		.carry = 1,
+		.to = p->centre,
+		.after = vec2_scale(p->normal, -1),
+		.pocket = (int16_t)pocket,
+	};
+}
+
+/* The thesis' program uses the rolling branch of 4.33 for every leg, short ones and those off a cushion too. */
+static double program_leg_backward(const struct material *m, double v_end, double way)
+{
+	double rolled = v_end * v_end + 2 * m->gravity * m->mu_roll * way;
+	return sqrt(49 * m->mu_slide * rolled / (49 * m->mu_slide + 24 * (m->mu_roll - m->mu_slide)));
+}
+
+double candidate_leg_backward(const struct scene *scene, double v_end, double way, bool rolling)
+{
+	if (scene->profile->program_speed)
+		return program_leg_backward(&scene->table->material, v_end, way);
+	return rolling ? leg_rolling_backward(scene->table, v_end, way) : leg_backward(scene->table, v_end, way);
+}
+
+/* Start speed for an arrival speed over a whole way. */
+static double way_backward(const struct scene *scene, const struct way *way, double v)
+{
+	for (int i = way->rails; i >= 0; i--) {
+		v = candidate_leg_backward(scene, v, way->leg[i], i > 0);
+		if (i > 0)
+			v = cushion_backward(scene->table, v);
+	}
+	return v;
+}
+
+/* Angle terms on arrival: at the target and at each cushion against its normal. */
+static double way_angles(const struct way *way, double cos_target)
+{
+	double sum = cost_angle(cos_target);
+	for (int i = 0; i < way->rails; i++) {
+		vec2 leg = vec2_sub(way->point[i + 1], way->point[i]);
+		sum += cost_angle(-vec2_dot(leg, way->normal[i]) / way->leg[i]);
+	}
+	return sum;
+}
+
+static double way_length2(const struct way *way)
+{
+	double sum = 0;
+	for (int i = 0; i <= way->rails; i++)
+		sum += way->leg[i] * way->leg[i];
+	return sum;
+}
+
+/* No ball stands in the way of ball. The cue ball has left its place by then; balls of the chain are hit on purpose, so for them the
+ * clearance does not count, but they must not be met before their turn. */
+static bool way_is_free(const struct scene *scene, const struct node *node, const struct way *way, int ball)
+{
+	double diameter = 2 * scene->table->ball_radius;
+	uint32_t chain = 0, struck = 0;
+	for (int i = 0; i < node->chain_count; i++)
+		chain |= 1u << node->chain[i];
+	if (node->chain_count > 0)
+		struck = 1u << node->chain[node->chain_count - 1];
+	uint32_t others = ~(chain | 1u << ball | 1u << scene->cue);
+	for (int i = 0; i <= way->rails; i++) {
+		uint32_t tight = i == way->rails ? chain & ~struck : chain;
+		if (!segment_is_free(scene->ball, scene->count, others, way->point[i], way->point[i + 1],
+				     diameter + scene->profile->clearance))
+			return false;
+		if (tight && !segment_is_free(scene->ball, scene->count, tight, way->point[i], way->point[i + 1], diameter))
+			return false;
+	}
+	return true;
+}
+
+/* The chain with ball in front of it, whose way and start speed are known. */
+static void extend(const struct scene *scene, const struct node *node, const struct way *way, int ball, int sequence,
+		   double cos_target, double speed, struct node *child)
+{
+	bool is_cue = ball == scene->cue;
+	vec2 direction = vec2_scale(vec2_sub(way->point[1], way->point[0]), 1 / way->leg[0]);
+	struct cost_way terms = {
+		.way2 = way_length2(way),
+		.carry = is_cue ? node->carry : 1,
+		.angles = way_angles(way, cos_target),
+		.rails = way->rails,
+		.strikes = !is_cue,
+	};
+	double step = cost_search(scene->table, scene->profile, &terms);
+	*child = *node;
+	child->search_cost += step;
+	child->cost += step;
+	child->carry = cost_distance(scene->table, way->leg[0] * way->leg[0]);
+	child->speed = speed;
+	child->to = vec2_madd(scene->ball[ball].pos, -2 * scene->table->ball_radius, direction);
+	child->after = direction;
+	child->angle = atan2(direction.y, direction.x);
+	child->sequence[child->chain_count] = (uint16_t)sequence;
+	child->chain[child->chain_count++] = (int8_t)ball;
+	child->rails = (uint8_t)(child->rails + way->rails);
+	child->complete = is_cue;
+}
+
+/* Ball over one sequence to the node's target: cheap tests first. */
+static bool try_way(const struct scene *scene, const struct node *node, const struct images *images, int ball, int sequence,
+		    struct node *child)
+{
+	const struct cost_profile *profile = scene->profile;
+	vec2 start = scene->ball[ball].pos;
+	vec2 d = vec2_sub(images->at[sequence], start);
+	double along = vec2_dot(d, images->direction[sequence]), length2 = vec2_norm2(d);
+	double cos_max = cos(profile->max_cut);
+	if (along <= 0 || along * along <= cos_max * cos_max * length2)
+		return false;
+	double cos_target = along / sqrt(length2);
+	double speed = node->chain_count == 0 ? node->speed : hit_backward(scene->table, node->speed, cos_target);
+	struct way way;
+	if (speed > profile->max_speed || !way_build(&way, scene->mirrors, images, sequence, start))
+		return false;
+	for (int i = 0; i <= way.rails; i++)
+		if (way.leg[i] <= 0)
+			return false;
+	speed = way_backward(scene, &way, speed);
+	if (speed > profile->max_speed || !way_is_free(scene, node, &way, ball))
+		return false;
+	extend(scene, node, &way, ball, sequence, cos_target, speed, child);
+	if (!child->complete)
+		return true;
+	uint32_t all = ~(1u << scene->cue);
+	return cue_has_room(scene->table, profile, scene->ball, scene->count, all, start, child->after);
+}
+
+/* Which balls may come in front of the chain. */
+static uint32_t next_balls(const struct scene *scene, const struct node *node)
+{
+	uint32_t used = 0;
+	for (int i = 0; i < node->chain_count; i++)
+		used |= 1u << node->chain[i];
+	uint32_t cue = 1u << scene->cue;
+	uint32_t balls = 0;
+	if (node->chain_count == 0)
+		balls = scene->wanted;
+	else if (node->chain_count < scene->balls && !scene->named)
+		balls = ~used & ~cue;
+	if (node->chain_count > 0 && (scene->on >> node->chain[node->chain_count - 1] & 1))
+		balls |= cue;
+	return balls;
+}
+
+int candidate_expand(const struct scene *scene, const struct node *node, struct node *child, int capacity, bool *overflow)
+{
+	assert(!node->complete);
+	struct images images;
+	images_init(&images, scene->mirrors, node->to, node->after, scene->rails);
+	uint32_t balls = next_balls(scene, node);
+	int count = 0;
+	for (int b = 0; b < scene->count; b++) {
+		if (!(balls >> b & 1) || scene->ball[b].phase == BALL_POTTED)
+			continue;
+		for (int s = 0; s < images.count; s++) {
+			struct node next;
+			if (!images.valid[s] || !try_way(scene, node, &images, b, s, &next))
+				continue;
+			if (count < capacity)
+				child[count++] = next;
+			else
+				*overflow = true;
+		}
+	}
+	return count;
+}

@@ -1,0 +1,100 @@
+/* The inside of a planner: what the files of the search share. */
+#ifndef BILLIARD_SEARCH_PLANNER_H
+#define BILLIARD_SEARCH_PLANNER_H
+
+#include <stdatomic.h>
+
+#include "search/frontier.h"
+#include "search/pool.h"
+#include "search/shot.h"
+
+enum {
+	BATCH = 16,		/* nodes worked on at a time: never depends on the number of workers, so that results do not */
+	SPEEDS_MAX = 8,		/* start speeds of one candidate */
+	CHILDREN_MAX = 2048,	/* of one expansion */
+	STATES_MAX = 2048,
+	NO_STATE = -1
+};
+
+/* A position of the joint tree: the start or where a planned shot ends. */
+struct state {
+	struct ball ball[BALL_MAX];
+	struct rules_state rules;
+	struct scene scene;	/* borrows ball */
+	struct record record;	/* the shot that led here, unless it is a root */
+	int32_t parent;		/* NO_STATE for a root */
+	int shots;		/* played before */
+	double cost;		/* of those */
+};
+
+/* What the simulation made of a complete node at one start speed. */
+struct played {
+	struct record record;
+	struct rules_outcome outcome;
+};
+
+/* One node of a batch and what came out of it; each is written by one worker. */
+struct slot {
+	struct node node;
+	struct node child[CHILDREN_MAX];
+	int child_count;
+	struct played played[SPEEDS_MAX];
+	int played_count;
+	uint64_t expansions, sims;
+	bool overflow;
+};
+
+/* A sequence of shots: all but the last are found by going up from state. */
+struct solution {
+	double cost;
+	int32_t state;
+	struct record last;
+};
+
+struct solutions {
+	struct solution item[PLAN_MAX];	/* best first */
+	int count, limit;
+};
+
+struct planner {
+	struct planner_def def;
+	struct mirrors mirrors;
+	struct pool *pool;
+	struct workspace *work;		/* one a worker */
+	struct slot *slot;		/* BATCH */
+	struct state *state;		/* STATES_MAX */
+	struct solutions *solutions;	/* by number of shots: PLAN_SHOTS_MAX */
+	struct plan *plan;		/* PLAN_MAX, what results point to */
+	struct frontier frontier;
+	atomic_bool cancel;
+
+	/* of the running search */
+	const struct plan_request *request;
+	int ball_count, cue, state_count, batch_count;
+	uint64_t nodes, sims;
+	double deadline;
+	bool overflow, cut;		/* something was dropped; ended before its time */
+};
+
+/* Sets up the first positions and their roots. */
+void search_begin(struct planner *planner);
+/* Works on the best open nodes once. False when there is nothing left to do. *improved: a better best plan. */
+bool search_step(struct planner *planner, bool *improved);
+/* True when cancelled or out of time. */
+bool search_is_over(const struct planner *planner);
+
+/* Simulates a complete node at all its start speeds. */
+void slot_play(const struct planner *planner, struct slot *slot, struct workspace *work);
+
+/* Sorted insertion; false when it is not among the limit best. */
+bool solutions_add(struct solutions *solutions, const struct solution *solution);
+/* The list of the longest sequences that there are; NULL when there is none. */
+struct solutions *best_solutions(struct planner *planner);
+
+/* Tolerance and success of one record played from state. */
+void tolerance_find(const struct planner *planner, const struct state *state, struct record *record, struct workspace *work);
+
+/* With nothing to pot: the simplest legal contact becomes the one solution. False when even that is not to be had. */
+bool safety_find(struct planner *planner);
+
+#endif

@@ -1,0 +1,56 @@
+/* A complete chain, played at its start speeds. */
+#include <string.h>
+
+#include "search/planner.h"
+
+static void begin_record(const struct node *node, struct record *record)
+{
+	memset(record, 0, sizeof *record);
+	record->shot.angle = node->angle;
+	record->target = node->chain[0];
+	record->pocket = node->pocket;
+	record->search_cost = node->search_cost;
+	record->rails = node->rails;
+	record->chain_count = node->chain_count;
+	for (int i = 0; i < node->chain_count; i++)
+		record->chain[i] = node->chain[node->chain_count - 1 - i];
+	record->success = NAN;
+}
+
+/* A legal pot of something else than meant becomes a proposal that says so. */
+static bool rename_fluke(const struct cost_profile *profile, const struct scene *scene, struct record *record)
+{
+	if (!profile->keep_flukes || record->potted_count == 0)
+		return false;
+	for (int i = 0; i < record->potted_count; i++)
+		if (scene->wanted >> record->potted[i].ball & 1) {
+			record->target = record->potted[i].ball;
+			record->pocket = record->potted[i].pocket;
+			return true;
+		}
+	return false;
+}
+
+void slot_play(const struct planner *planner, struct slot *slot, struct workspace *work)
+{
+	const struct state *state = &planner->state[slot->node.state];
+	const struct cost_profile *profile = &planner->def.profile;
+	int speeds = planner->request->speeds < SPEEDS_MAX ? planner->request->speeds : SPEEDS_MAX;
+	for (int i = 0; i < speeds; i++) {
+		struct played *played = &slot->played[slot->played_count];
+		struct record *record = &played->record;
+		begin_record(&slot->node, record);
+		record->shot.speed = slot->node.speed + i * profile->speed_step;
+		if (record->shot.speed > profile->max_speed)
+			break;
+		slot->sims++;
+		if (!shot_play(work, planner->def.table, &planner->def.model, state->ball, planner->ball_count, &state->rules, record,
+			       &played->outcome) ||
+		    record->foul != 0)
+			continue;
+		if (!shot_is_as_meant(record) && !rename_fluke(profile, &state->scene, record))
+			continue;
+		record->cost = record->search_cost + cost_result(profile, record->points, record->shot.speed, record->search_cost);
+		slot->played_count++;
+	}
+}

@@ -1,0 +1,269 @@
+/* One step of the joint tree: a batch of the best open nodes is worked on, then what came out is merged in order. */
+#include <assert.h>
+
+#include "search/planner.h"
+#include "search/respot.h"
+
+bool search_is_over(const struct planner *planner)
+{
+	if (atomic_load_explicit(&planner->cancel, memory_order_relaxed))
+		return true;
+	return planner->def.now && planner->def.now(planner->def.now_context) >= planner->deadline;
+}
+
+/* Under which rules the first shot is judged. A named colour is played as after a red, or in its turn when no red is left. */
+static struct rules_state first_rules(const struct planner *planner)
+{
+	const struct plan_request *request = planner->request;
+	struct rules_state rules = request->state;
+	enum ball_colour colour = request->target_colour;
+	switch (request->target) {
+	case TARGET_RULES:
+		return rules;
+	case TARGET_ANY:
+		rules.on = ON_ANY;
+		return rules;
+	case TARGET_BALL:
+		colour = request->ball[request->target_ball].colour;
+		break;
+	case TARGET_COLOUR:
+		break;
+	}
+	struct rules_state position = rules_state_from_position(request->ball, request->ball_count);
+	if (colour == COLOUR_UNKNOWN)
+		rules.on = ON_ANY;
+	else if (colour == COLOUR_RED)
+		rules.on = ON_RED;
+	else
+		rules.on = ON_COLOUR;
+	for (int i = 0; i < request->ball_count && position.on == ON_CLEARANCE; i++)
+		if (request->ball[i].colour == colour && rules_ball_on(&position, request->ball, request->ball_count, i))
+			rules.on = ON_CLEARANCE;
+	return rules;
+}
+
+static bool is_wanted(const struct plan_request *request, const struct state *state, int ball)
+{
+	if (state->shots > 0)
+		return true;
+	if (request->target == TARGET_BALL)
+		return ball == request->target_ball;
+	if (request->target == TARGET_COLOUR)
+		return state->ball[ball].colour == request->target_colour;
+	return true;
+}
+
+static void set_scene(const struct planner *planner, struct state *state)
+{
+	const struct plan_request *request = planner->request;
+	struct scene *scene = &state->scene;
+	*scene = (struct scene){
+		.table = planner->def.table,
+		.mirrors = &planner->mirrors,
+		.profile = &planner->def.profile,
+		.ball = state->ball,
+		.count = planner->ball_count,
+		.cue = planner->cue,
+		.named = state->rules.on == ON_COLOUR,
+		.rails = request->rails,
+		.balls = request->balls,
+	};
+	for (int i = 0; i < scene->count; i++) {
+		if (!rules_ball_on(&state->rules, state->ball, scene->count, i))
+			continue;
+		scene->on |= 1u << i;
+		if (is_wanted(request, state, i))
+			scene->wanted |= 1u << i;
+	}
+}
+
+static void push_roots(struct planner *planner, int index)
+{
+	struct state *state = &planner->state[index];
+	set_scene(planner, state);
+	for (int p = 0; p < planner->def.table->pocket_count && state->scene.wanted; p++) {
+		struct node root = candidate_root(&state->scene, p);
+		root.state = (uint32_t)index;
+		root.cost = state->cost;
+		frontier_push(&planner->frontier, &root);
+	}
+}
+
+static void add_root_state(struct planner *planner, vec2 cue)
+{
+	struct state *state = &planner->state[planner->state_count];
+	const struct plan_request *request = planner->request;
+	*state = (struct state){.rules = first_rules(planner), .parent = NO_STATE};
+	state->rules.in_hand = false;
+	for (int i = 0; i < request->ball_count; i++)
+		state->ball[i] = request->ball[i];
+	state->ball[planner->cue] = ball_at(COLOUR_WHITE, cue);
+	push_roots(planner, planner->state_count++);
+}
+
+/* Places in the D: its middle, half way out and on its line; what is free of them. */
+static void add_places_in_hand(struct planner *planner)
+{
+	enum { RINGS = 2, RAYS = 7 };
+	const struct table *table = planner->def.table;
+	struct ball others[BALL_MAX];
+	for (int i = 0; i < planner->ball_count; i++)
+		others[i] = planner->request->ball[i];
+	others[planner->cue].phase = BALL_POTTED;
+	if (respot_is_free(table, others, planner->ball_count, table->baulk_d_centre))
+		add_root_state(planner, table->baulk_d_centre);
+	for (int ring = 1; ring <= RINGS; ring++)
+		for (int ray = 0; ray < RAYS; ray++) {
+			vec2 out = vec2_from_angle(M_PI / 2 + M_PI * ray / (RAYS - 1));
+			vec2 place = vec2_madd(table->baulk_d_centre, table->baulk_d_radius * ring / RINGS, out);
+			if (respot_is_free(table, others, planner->ball_count, place))
+				add_root_state(planner, place);
+		}
+}
+
+void search_begin(struct planner *planner)
+{
+	const struct plan_request *request = planner->request;
+	frontier_clear(&planner->frontier);
+	planner->ball_count = request->ball_count;
+	planner->state_count = 0;
+	planner->nodes = planner->sims = 0;
+	planner->overflow = planner->cut = false;
+	for (int i = 0; i < PLAN_SHOTS_MAX; i++) {
+		planner->solutions[i].count = 0;
+		planner->solutions[i].limit = request->plans;
+	}
+	for (int i = 0; i < request->ball_count; i++)
+		if (request->ball[i].colour == COLOUR_WHITE)
+			planner->cue = i;
+	if (request->state.in_hand)
+		add_places_in_hand(planner);
+	if (planner->state_count == 0)
+		add_root_state(planner, request->ball[planner->cue].pos);
+}
+
+bool solutions_add(struct solutions *solutions, const struct solution *solution)
+{
+	int at = solutions->count;
+	while (at > 0 && solution->cost < solutions->item[at - 1].cost)
+		at--;
+	if (at == solutions->limit)
+		return false;
+	if (solutions->count < solutions->limit)
+		solutions->count++;
+	for (int i = solutions->count - 1; i > at; i--)
+		solutions->item[i] = solutions->item[i - 1];
+	solutions->item[at] = *solution;
+	return true;
+}
+
+struct solutions *best_solutions(struct planner *planner)
+{
+	for (int shots = planner->request->depth; shots >= 1; shots--)
+		if (planner->solutions[shots - 1].count > 0)
+			return &planner->solutions[shots - 1];
+	return NULL;
+}
+
+static void work_on(void *context, int item, int worker)
+{
+	struct planner *planner = context;
+	struct slot *slot = &planner->slot[item];
+	slot->child_count = slot->played_count = 0;
+	slot->expansions = slot->sims = 0;
+	slot->overflow = false;
+	if (atomic_load_explicit(&planner->cancel, memory_order_relaxed))
+		return;
+	if (slot->node.complete) {
+		slot_play(planner, slot, &planner->work[worker]);
+		return;
+	}
+	const struct state *state = &planner->state[slot->node.state];
+	slot->child_count = candidate_expand(&state->scene, &slot->node, slot->child, CHILDREN_MAX, &slot->overflow);
+	slot->expansions = 1;
+}
+
+/* Cost that a sequence must stay below to be among the wanted ones. */
+static double cost_limit(const struct planner *planner)
+{
+	const struct solutions *full = &planner->solutions[planner->request->depth - 1];
+	return full->count == full->limit ? full->item[full->count - 1].cost : INFINITY;
+}
+
+/* Nothing on the table is left to play for. */
+static bool is_cleared(const struct rules_outcome *outcome, int count)
+{
+	for (int i = 0; i < count; i++)
+		if (rules_ball_on(&outcome->next, outcome->ball, count, i))
+			return false;
+	return true;
+}
+
+static void merge_played(struct planner *planner, const struct slot *slot, const struct played *played, bool *improved)
+{
+	const struct state *from = &planner->state[slot->node.state];
+	int depth = planner->request->depth, shots = from->shots + 1;
+	bool last = shots == depth || is_cleared(&played->outcome, planner->ball_count);
+	struct solution solution = {from->cost + played->record.cost, (int32_t)slot->node.state, played->record};
+	struct solutions *list = &planner->solutions[last ? depth - 1 : shots - 1];
+	if (solutions_add(list, &solution) && list == best_solutions(planner) && list->item[0].cost == solution.cost)
+		*improved = true;
+	if (last || solution.cost >= cost_limit(planner))
+		return;
+	if (planner->state_count == STATES_MAX) {
+		planner->overflow = true;
+		return;
+	}
+	struct state *state = &planner->state[planner->state_count];
+	*state = (struct state){
+		.rules = played->outcome.next,
+		.record = played->record,
+		.parent = (int32_t)slot->node.state,
+		.shots = shots,
+		.cost = solution.cost,
+	};
+	for (int i = 0; i < planner->ball_count; i++)
+		state->ball[i] = played->outcome.ball[i];
+	push_roots(planner, planner->state_count++);
+}
+
+static void merge(struct planner *planner, const struct slot *slot, bool *improved)
+{
+	planner->nodes += slot->expansions;
+	planner->sims += slot->sims;
+	planner->overflow |= slot->overflow;
+	for (int i = 0; i < slot->played_count; i++)
+		merge_played(planner, slot, &slot->played[i], improved);
+	double limit = cost_limit(planner);
+	for (int i = 0; i < slot->child_count; i++)
+		if (slot->child[i].cost < limit)
+			frontier_push(&planner->frontier, &slot->child[i]);
+}
+
+/* How many nodes this batch may take: all that is left of a node budget at most. */
+static int batch_size(struct planner *planner)
+{
+	uint64_t budget = planner->request->budget.nodes, used = planner->nodes + planner->sims;
+	if (budget == 0 || budget - used >= BATCH)
+		return BATCH;
+	return (int)(budget - used);
+}
+
+bool search_step(struct planner *planner, bool *improved)
+{
+	uint64_t budget = planner->request->budget.nodes;
+	*improved = false;
+	if (frontier_best(&planner->frontier) >= cost_limit(planner))
+		return false;
+	if (search_is_over(planner) || (budget > 0 && planner->nodes + planner->sims >= budget)) {
+		planner->cut = true;
+		return false;
+	}
+	int size = batch_size(planner), count = 0;
+	while (count < size && planner->frontier.count > 0)
+		planner->slot[count++].node = frontier_pop(&planner->frontier);
+	pool_for(planner->pool, count, work_on, planner);
+	for (int i = 0; i < count; i++)
+		merge(planner, &planner->slot[i], improved);
+	return true;
+}
