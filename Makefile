@@ -17,12 +17,13 @@ JOBS ?= $(shell nproc)
 
 # ---- sources: every file by hand -------------------------------------------------------------------------------------
 
-PHYSICS := ball event model table contact_ball_real contact_stronge contact_mathavan
+PHYSICS := ball collide contact contact_ball_real contact_mathavan contact_stronge detect event inverse model motion queue \
+	roots sim table trace
 SEARCH := candidate cost frontier geometry plan play pool request respot rules safety shot step tolerance
 VISION := camera detect fit linear outline pose reason scan seeds
 VISION_CV := capture_cv image_io_cv markers_cv
 # app: what the programs share
-APP := text_file config config_reader config_table position draw draw_field draw_path draw_proposal render
+APP := text_file config config_reader config_table position cmd cmd_simulate cmd_detect plot overlay draw draw_field draw_path draw_proposal render
 # programs: src/app/main_NAME.c becomes build/NAME
 PROGRAMS :=
 # tests/test_NAME.c each; tests/NAME.c shared by them

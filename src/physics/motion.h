@@ -19,6 +19,15 @@ double motion_phase_end(const struct ball *ball, const struct table *table, enum
 /* The ball dt >= 0 later, within the same phase (dt is at most motion_phase_end). */
 struct ball motion_advance(const struct ball *ball, const struct table *table, double dt);
 
+/* The same with the acceleration already known: what the engine calls. */
+struct ball motion_advance_by(const struct ball *ball, const struct table *table, vec2 acceleration, double dt);
+
+/* Applies the end of a phase to a ball advanced to it: what the new phase demands holds exactly, not up to rounding. */
+void motion_transition(struct ball *ball, const struct table *table, enum event_kind kind);
+
+/* Makes the ball roll at its present velocity, without vertical spin. */
+void motion_roll(struct ball *ball, const struct table *table);
+
 /* Sets phase from velocity and spin: a ball whose slip is below rounding rolls, one without speed spins or rests. */
 void motion_classify(struct ball *ball, const struct table *table);
 

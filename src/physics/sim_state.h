@@ -4,9 +4,14 @@
 
 #include <stdint.h>
 
+#include "physics/detect.h"
 #include "physics/event.h"
 #include "physics/model.h"
+#include "physics/queue.h"
 #include "physics/table.h"
+
+/* Contacts of one instant that are solved together. */
+enum { GROUP_MAX = 48 };
 
 struct sim {
 	const struct table *table;	/* borrowed */
@@ -16,6 +21,13 @@ struct sim {
 	int event_count;
 	struct ball ball[BALL_MAX];	/* at its own last event */
 	double ball_time[BALL_MAX];	/* s, when that was */
+	struct motion motion[BALL_MAX];	/* of the phase that began then */
+	struct queue queue;
+	struct event pending[GROUP_MAX];	/* already resolved, still to be reported */
+	int pending_count, pending_next;
+	double instant;			/* s, of the last contact that advanced time */
+	int instant_contacts;		/* contacts since then */
+	struct solve_count solved;	/* since sim_init() */
 };
 
 #endif

@@ -1,0 +1,208 @@
+#include "physics/collide.h"
+
+#include "physics/contact.h"
+#include "physics/motion.h"
+
+/* Contacts within this time are one instant: above the rounding of a contact's time, and at 20 m/s less than 1e-10 m. */
+static const double SAME_INSTANT = 4e-12; /* s */
+/* Two bodies that press on each other meet again no sooner than this. The restitution laws have no force that lasts; without
+ * a bound, a pressed pair bounces ever faster (Luding and McNamara 1998 bound it likewise). */
+static const double PRESS_INTERVAL = 2e-3; /* s */
+/* At most this share of the pair's root mean square speed goes into keeping them apart. */
+static const double LIFT_SHARE = 0.05;
+/* More contacts than this at one instant are an inelastic collapse, not a cascade through a rack. */
+enum { CASCADE_MAX = 400 };
+
+void collide_collect(const struct sim *sim, const struct event *first, struct group *group)
+{
+	double limit = first->time + SAME_INSTANT;
+	group->count = 0;
+	group->contact[group->count++] = *first;
+	group->balls = 1u << first->ball | 1u << first->other;
+	for (uint32_t before = 0; before != group->balls;) {
+		before = group->balls;
+		group->count = 0;
+		for (int high = 1; high < sim->ball_count; high++) {
+			if (sim->queue.row_time[high] > limit)
+				continue;
+			for (int low = 0; low < high && group->count < GROUP_MAX; low++) {
+				uint32_t pair = 1u << low | 1u << high;
+				if (queue_pair(&sim->queue, low, high) > limit || !(group->balls & pair))
+					continue;
+				group->balls |= pair;
+				group->contact[group->count++] =
+					(struct event){first->time, EVENT_BALL_BALL, (int16_t)low, (int16_t)high};
+			}
+		}
+	}
+}
+
+/* ---- energy ---------------------------------------------------------------------------------------------------------- */
+
+/* Twice the energy per mass, m^2/s^2. */
+static double energy(const struct ball *ball, double radius)
+{
+	double w2 = ball->spin[0] * ball->spin[0] + ball->spin[1] * ball->spin[1] + ball->spin[2] * ball->spin[2];
+	return vec2_norm2(ball->vel) + 0.4 * radius * radius * w2;
+}
+
+static void scale_motion(struct ball *ball, double k)
+{
+	ball->vel = vec2_scale(ball->vel, k);
+	for (int i = 0; i < 3; i++)
+		ball->spin[i] *= k;
+}
+
+/* ---- pressing contacts ----------------------------------------------------------------------------------------------- */
+
+/* Separation speed that keeps two bodies apart for PRESS_INTERVAL when they press with acceleration `press`. */
+static double lift_speed(const struct sim *sim, double press, double rms_speed)
+{
+	double lift = 0.5 * press * PRESS_INTERVAL;
+	double most = LIFT_SHARE * rms_speed;
+	if (sim->instant_contacts > CASCADE_MAX)
+		lift = fmax(lift, 1e-6 * rms_speed * (sim->instant_contacts - CASCADE_MAX));
+	return lift < most ? lift : most;
+}
+
+/* Balls that leave a contact slower than the cloth presses them together get the speed to stay apart a while, taken from
+ * their own motion: the energy stays. */
+static void lift_balls(const struct sim *sim, struct ball *a, struct ball *b)
+{
+	double r = sim->table->ball_radius;
+	vec2 n = vec2_unit(vec2_sub(b->pos, a->pos));
+	double press = vec2_dot(vec2_sub(motion_acceleration(a, sim->table), motion_acceleration(b, sim->table)), n);
+	double leave = vec2_dot(vec2_sub(b->vel, a->vel), n);
+	double before = energy(a, r) + energy(b, r);
+	double lift = lift_speed(sim, press, sqrt(before));
+	if (leave >= lift)
+		return;
+	double slip_a = vec2_norm(motion_slip(a, r)), slip_b = vec2_norm(motion_slip(b, r));
+	a->vel = vec2_madd(a->vel, -0.5 * (lift - leave), n);
+	b->vel = vec2_madd(b->vel, 0.5 * (lift - leave), n);
+	double k = sqrt(before / (energy(a, r) + energy(b, r)));
+	if (k < 1) {
+		scale_motion(a, k);
+		scale_motion(b, k);
+	}
+	contact_set_phase(sim->table, &sim->model, a->phase, slip_a, a);
+	contact_set_phase(sim->table, &sim->model, b->phase, slip_b, b);
+}
+
+static void lift_at_cushion(const struct sim *sim, vec2 normal, struct ball *ball)
+{
+	if (ball->phase != BALL_SLIDING)
+		return; /* a rolling path is straight: it leads away for good */
+	double r = sim->table->ball_radius;
+	double press = -vec2_dot(motion_acceleration(ball, sim->table), normal);
+	double leave = vec2_dot(ball->vel, normal);
+	double before = energy(ball, r);
+	double lift = lift_speed(sim, press, sqrt(before));
+	if (leave >= lift)
+		return;
+	ball->vel = vec2_madd(ball->vel, lift - leave, normal);
+	double k = sqrt(before / energy(ball, r));
+	if (k < 1)
+		scale_motion(ball, k);
+	motion_classify(ball, sim->table);
+}
+
+/* ---- contacts of one instant ----------------------------------------------------------------------------------------- */
+
+struct joint {
+	struct ball *a, *b;
+	vec2 n;		/* unit, from a to b */
+	double target;	/* separation speed after the contact */
+	double impulse; /* per mass, so far */
+	double change;
+};
+
+static double joint_change(const struct joint *j, double share)
+{
+	double missing = j->target - vec2_dot(vec2_sub(j->b->vel, j->a->vel), j->n);
+	double change = 0.5 * share * missing;
+	return change > -j->impulse ? change : -j->impulse;
+}
+
+/* Projected Jacobi iteration: every contact ends with its own separation speed or without impulse (Moreau's law). All
+ * changes of a sweep are found before any is applied: no order among the contacts. */
+static void solve_joints(struct joint *joint, int count, double share, double speed)
+{
+	for (int sweep = 0; sweep < 2000; sweep++) {
+		double largest = 0;
+		for (int i = 0; i < count; i++) {
+			joint[i].change = joint_change(&joint[i], share);
+			largest = fmax(largest, fabs(joint[i].change));
+		}
+		for (int i = 0; i < count; i++) {
+			struct joint *j = &joint[i];
+			j->impulse += j->change;
+			j->a->vel = vec2_madd(j->a->vel, -j->change, j->n);
+			j->b->vel = vec2_madd(j->b->vel, j->change, j->n);
+		}
+		if (largest <= 1e-16 * speed)
+			break;
+	}
+}
+
+static int most_contacts(const struct group *group)
+{
+	int degree[BALL_MAX] = {0}, most = 1;
+	for (int i = 0; i < group->count; i++) {
+		int a = ++degree[group->contact[i].ball], b = ++degree[group->contact[i].other];
+		most = a > most ? a : most;
+		most = b > most ? b : most;
+	}
+	return most;
+}
+
+static void collide_jointly(struct sim *sim, const struct group *group)
+{
+	const struct table *table = sim->table;
+	struct joint joint[GROUP_MAX];
+	enum ball_phase phase[BALL_MAX];
+	double slip[BALL_MAX], speed = 0;
+	double restitution = contact_restitution(table, &sim->model), left = contact_speed_left(table, &sim->model);
+	for (int i = 0; i < sim->ball_count; i++) {
+		phase[i] = sim->ball[i].phase;
+		slip[i] = vec2_norm(motion_slip(&sim->ball[i], table->ball_radius));
+	}
+	for (int i = 0; i < group->count; i++) {
+		struct ball *a = &sim->ball[group->contact[i].ball], *b = &sim->ball[group->contact[i].other];
+		vec2 n = vec2_unit(vec2_sub(b->pos, a->pos));
+		double approach = vec2_dot(vec2_sub(a->vel, b->vel), n);
+		joint[i] = (struct joint){a, b, n, restitution * fmax(approach, 0), 0, 0};
+		speed = fmax(speed, approach);
+	}
+	solve_joints(joint, group->count, 1.0 / most_contacts(group), speed);
+	for (int i = 0; i < sim->ball_count; i++) {
+		if (!(group->balls >> i & 1))
+			continue;
+		if (left != 1)
+			scale_motion(&sim->ball[i], left);
+		contact_set_phase(table, &sim->model, phase[i], slip[i], &sim->ball[i]);
+	}
+	for (int i = 0; i < group->count; i++)
+		lift_balls(sim, joint[i].a, joint[i].b);
+}
+
+void collide_balls(struct sim *sim, const struct group *group)
+{
+	if (group->count > 1) {
+		collide_jointly(sim, group);
+		return;
+	}
+	struct ball *a = &sim->ball[group->contact[0].ball], *b = &sim->ball[group->contact[0].other];
+	vec2 n = vec2_unit(vec2_sub(b->pos, a->pos));
+	if (vec2_dot(vec2_sub(a->vel, b->vel), n) > 0)
+		contact_balls(sim->table, &sim->model, a, b);
+	lift_balls(sim, a, b);
+}
+
+void collide_cushion(struct sim *sim, int ball, vec2 normal, double nose_height)
+{
+	struct ball *b = &sim->ball[ball];
+	if (vec2_dot(b->vel, normal) < 0)
+		contact_cushion(sim->table, &sim->model, normal, nose_height, b);
+	lift_at_cushion(sim, normal, b);
+}

@@ -1,0 +1,25 @@
+/* Resolving contacts inside a simulation: which contacts of one instant belong together, and what keeps their number
+ * finite. */
+#ifndef BILLIARD_PHYSICS_COLLIDE_H
+#define BILLIARD_PHYSICS_COLLIDE_H
+
+#include "physics/sim_state.h"
+
+/* Contacts found together, and the balls that took part (bit i: ball i). */
+struct group {
+	struct event contact[GROUP_MAX];
+	int count;
+	uint32_t balls;
+};
+
+/* All contacts due at first->time that hang together with first by a shared ball; in the order of event_compare(). */
+void collide_collect(const struct sim *sim, const struct event *first, struct group *group);
+
+/* Changes the balls of the group, which must have been advanced to its time. Of contacts that share a ball the impulses are
+ * solved at once, so that mirrored positions give mirrored results. */
+void collide_balls(struct sim *sim, const struct group *group);
+
+/* A ball at a cushion, tip or jaw; normal: unit, from the cushion towards the ball. */
+void collide_cushion(struct sim *sim, int ball, vec2 normal, double nose_height);
+
+#endif

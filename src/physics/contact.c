@@ -1,0 +1,120 @@
+#include "physics/contact.h"
+
+#include "physics/contact_real.h"
+#include "physics/motion.h"
+
+double contact_restitution(const struct table *table, const struct model *model)
+{
+	bool loses = model->ball == BALL_MODEL_RESTITUTION || model->ball == BALL_MODEL_FRICTIONAL;
+	return loses ? table->material.e_ball : 1;
+}
+
+double contact_speed_left(const struct table *table, const struct model *model)
+{
+	return model->ball == BALL_MODEL_THESIS ? 1 - table->material.loss_ball : 1;
+}
+
+/* Thesis motion knows no spin but that which keeps a ball sliding for the time left to it. */
+static void slide_on(const struct table *table, double slip, struct ball *ball)
+{
+	double speed = vec2_norm(ball->vel);
+	double k = speed > 0 ? (slip / speed - 1) / table->ball_radius : 0;
+	ball->spin[0] = k * ball->vel.y;
+	ball->spin[1] = -k * ball->vel.x;
+	ball->spin[2] = 0;
+	motion_classify(ball, table);
+}
+
+void contact_set_phase(const struct table *table, const struct model *model, enum ball_phase phase, double slip,
+		       struct ball *ball)
+{
+	if (!model->thesis_motion)
+		motion_classify(ball, table);
+	else if (phase == BALL_ROLLING)
+		motion_roll(ball, table);
+	else
+		slide_on(table, phase == BALL_SLIDING ? slip : vec2_norm(ball->vel), ball);
+}
+
+/* Equal masses, no friction: the normal components are exchanged, the approach times e. */
+static void exchange(double restitution, struct ball *a, struct ball *b)
+{
+	vec2 n = vec2_unit(vec2_sub(b->pos, a->pos));
+	double impulse = 0.5 * (1 + restitution) * vec2_dot(vec2_sub(a->vel, b->vel), n);
+	a->vel = vec2_madd(a->vel, -impulse, n);
+	b->vel = vec2_madd(b->vel, impulse, n);
+}
+
+/* 4.56 to 4.61: what topspin adds to the tangential part; at most the incoming speed. v is the velocity after the loss. */
+static vec2 topspin(const struct material *m, enum ball_phase phase, vec2 v, vec2 tangential)
+{
+	if (phase != BALL_ROLLING || m->topspin_variant == 0)
+		return tangential;
+	vec2 push = m->topspin_variant == 1 ? vec2_unit(v) : v;
+	vec2 sum = vec2_madd(tangential, m->topspin_factor, push);
+	double speed = vec2_norm(v), size = vec2_norm(sum);
+	return size > speed ? vec2_scale(sum, speed / size) : sum;
+}
+
+/* 4.43 to 4.55 */
+static void thesis_balls(const struct table *table, struct ball *a, struct ball *b)
+{
+	const struct material *m = &table->material;
+	vec2 z = vec2_unit(vec2_sub(b->pos, a->pos));
+	vec2 va = vec2_scale(a->vel, 1 - m->loss_ball), vb = vec2_scale(b->vel, 1 - m->loss_ball);
+	vec2 za = vec2_scale(z, vec2_dot(va, z)), zb = vec2_scale(z, vec2_dot(vb, z));
+	a->vel = vec2_add(zb, topspin(m, a->phase, va, vec2_sub(va, za)));
+	b->vel = vec2_add(za, topspin(m, b->phase, vb, vec2_sub(vb, zb)));
+}
+
+void contact_balls(const struct table *table, const struct model *model, struct ball *a, struct ball *b)
+{
+	enum ball_phase phase_a = a->phase, phase_b = b->phase;
+	double slip_a = vec2_norm(motion_slip(a, table->ball_radius));
+	double slip_b = vec2_norm(motion_slip(b, table->ball_radius));
+	switch (model->ball) {
+	case BALL_MODEL_ELASTIC:
+	case BALL_MODEL_RESTITUTION:
+		exchange(contact_restitution(table, model), a, b);
+		break;
+	case BALL_MODEL_THESIS:
+		thesis_balls(table, a, b);
+		break;
+	case BALL_MODEL_FRICTIONAL:
+		contact_ball_frictional(table, a, b);
+		break;
+	}
+	contact_set_phase(table, model, phase_a, slip_a, a);
+	contact_set_phase(table, model, phase_b, slip_b, b);
+}
+
+static void mirror(double restitution, vec2 normal, struct ball *ball)
+{
+	ball->vel = vec2_madd(ball->vel, -(1 + restitution) * vec2_dot(ball->vel, normal), normal);
+}
+
+void contact_cushion(const struct table *table, const struct model *model, vec2 normal, double nose_height,
+		     struct ball *ball)
+{
+	switch (model->cushion) {
+	case CUSHION_MODEL_MIRROR:
+		mirror(1, normal, ball);
+		break;
+	case CUSHION_MODEL_RESTITUTION:
+		mirror(table->material.e_cushion, normal, ball);
+		break;
+	case CUSHION_MODEL_THESIS:
+		/* 4.62, 4.63 with (1 - E) for 1/(1 + E); rolls at once (4.6.4.9) */
+		mirror(1, normal, ball);
+		ball->vel = vec2_scale(ball->vel, 1 - table->material.loss_cushion);
+		motion_roll(ball, table);
+		return;
+	case CUSHION_MODEL_STRONGE:
+		contact_cushion_stronge(table, normal, nose_height, ball);
+		break;
+	case CUSHION_MODEL_MATHAVAN:
+		contact_cushion_mathavan(table, normal, nose_height, ball);
+		break;
+	}
+	motion_classify(ball, table);
+}

@@ -1,0 +1,26 @@
+/* Contact laws by model: what one contact does to the balls. Pure functions; they set velocity, spin and phase. */
+#ifndef BILLIARD_PHYSICS_CONTACT_H
+#define BILLIARD_PHYSICS_CONTACT_H
+
+#include "physics/model.h"
+#include "physics/table.h"
+
+/* Two touching balls that approach. */
+void contact_balls(const struct table *table, const struct model *model, struct ball *a, struct ball *b);
+
+/* A ball that approaches a cushion; normal: unit, from the cushion towards the ball. */
+void contact_cushion(const struct table *table, const struct model *model, vec2 normal, double nose_height,
+		     struct ball *ball);
+
+/* Restitution of the model's frictionless part, and the share of speed that a contact leaves: what a simultaneous contact
+ * of more than two balls is solved with. */
+double contact_restitution(const struct table *table, const struct model *model);
+double contact_speed_left(const struct table *table, const struct model *model);
+
+/* Phase after a contact. slip is the slip speed before it (m/s), phase the phase before it; both matter only in thesis
+ * motion: a sliding ball goes on sliding for the time it had left, a rolling one rolls on, a resting one slides
+ * without spin (4.6.4.9). */
+void contact_set_phase(const struct table *table, const struct model *model, enum ball_phase phase, double slip,
+		       struct ball *ball);
+
+#endif

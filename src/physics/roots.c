@@ -1,0 +1,160 @@
+#include "physics/roots.h"
+
+#include <math.h>
+#include <stdbool.h>
+
+int roots_quadratic(double a, double b, double c, double root[2])
+{
+	if (a == 0) {
+		if (b == 0)
+			return 0;
+		root[0] = -c / b;
+		return 1;
+	}
+	double disc = b * b - 4 * a * c;
+	if (disc < 0)
+		return 0;
+	/* b and the square root are added with equal sign: no cancellation; the other root by Vieta */
+	double q = -0.5 * (b + copysign(sqrt(disc), b));
+	double x = q / a, y = q != 0 ? c / q : x;
+	root[0] = x < y ? x : y;
+	root[1] = x < y ? y : x;
+	return root[0] == root[1] ? 1 : 2;
+}
+
+double roots_quadratic_entry(double c0, double c1, double c2, double horizon)
+{
+	if (c0 <= 0) {
+		if (c1 < 0 || (c1 == 0 && c2 < 0))
+			return 0;
+		c0 = 0;
+	}
+	double t;
+	if (c2 < 0 && c1 >= 0) {
+		/* rises first, falls later: the larger root */
+		t = (c1 + sqrt(c1 * c1 - 4 * c2 * c0)) / (-2 * c2);
+	} else if (c1 < 0) {
+		double disc = c1 * c1 - 4 * c2 * c0;
+		if (disc < 0)
+			return INFINITY;
+		t = 2 * c0 / (-c1 + sqrt(disc));
+	} else {
+		return INFINITY;
+	}
+	return t <= horizon ? t : INFINITY;
+}
+
+/* A polynomial on the unit interval. */
+struct quartic {
+	double c0, c1, c2, c3, c4;
+};
+
+static inline double value(const struct quartic *q, double s)
+{
+	return q->c0 + s * (q->c1 + s * (q->c2 + s * (q->c3 + s * q->c4)));
+}
+
+static inline double slope(const struct quartic *q, double s)
+{
+	return q->c1 + s * (2 * q->c2 + s * (3 * q->c3 + s * (4 * q->c4)));
+}
+
+/* The Bernstein coefficients bound the polynomial: all positive, no root. */
+static inline bool positive_hull(const struct quartic *q)
+{
+	double b1 = q->c0 + 0.25 * q->c1;
+	double b2 = q->c0 + 0.5 * q->c1 + q->c2 / 6;
+	double b3 = q->c0 + 0.75 * q->c1 + 0.5 * q->c2 + 0.25 * q->c3;
+	double b4 = q->c0 + q->c1 + q->c2 + q->c3 + q->c4;
+	return b1 > 0 && b2 > 0 && b3 > 0 && b4 > 0;
+}
+
+static inline bool falls_at_start(const struct quartic *q)
+{
+	if (q->c1 != 0)
+		return q->c1 < 0;
+	if (q->c2 != 0)
+		return q->c2 < 0;
+	return q->c3 != 0 ? q->c3 < 0 : q->c4 < 0;
+}
+
+enum { NEWTON_MAX = 80 };
+
+/* Convex piece: tangents lie below the curve, so steps from the left never pass the first root. A double root halves the
+ * distance each time: NEWTON_MAX steps resolve it to rounding. Returns -1 when there is no entry. */
+static double convex_entry(const struct quartic *q, double left, double right)
+{
+	double s = left;
+	for (int i = 0; i < NEWTON_MAX; i++) {
+		double v = value(q, s), d = slope(q, s);
+		if (d >= 0)
+			return -1;
+		if (v <= 0)
+			return s;
+		double next = s - v / d;
+		if (next > right)
+			return -1;
+		if (next == s)
+			return s;
+		s = next;
+	}
+	return s;
+}
+
+/* Concave piece that starts at or above zero: it falls through zero once, if it ends below. Tangents lie above the curve,
+ * so steps from the right end come down to the root from above. */
+static double concave_entry(const struct quartic *q, double left, double right)
+{
+	double s = right;
+	if (value(q, right) > 0 || slope(q, right) >= 0)
+		return -1;
+	for (int i = 0; i < NEWTON_MAX; i++) {
+		double v = value(q, s), d = slope(q, s);
+		if (v >= 0 || d >= 0)
+			return s;
+		double next = s - v / d;
+		if (next <= left)
+			return left;
+		if (next == s)
+			return s;
+		s = next;
+	}
+	return s;
+}
+
+/* Inflection points inside (0, 1), ascending, then 1. */
+static int piece_ends(const struct quartic *q, double end[3])
+{
+	double root[2];
+	int count = 0, n = roots_quadratic(6 * q->c4, 3 * q->c3, q->c2, root);
+	for (int i = 0; i < n; i++) {
+		if (root[i] > 0 && root[i] < 1)
+			end[count++] = root[i];
+	}
+	end[count++] = 1;
+	return count;
+}
+
+double roots_quartic_entry(const double c[5], double horizon)
+{
+	double h2 = horizon * horizon;
+	struct quartic q = {c[0], c[1] * horizon, c[2] * h2, c[3] * h2 * horizon, c[4] * h2 * h2};
+	if (q.c0 <= 0) {
+		if (falls_at_start(&q))
+			return 0;
+		q.c0 = 0;
+	}
+	if (positive_hull(&q))
+		return INFINITY;
+	double end[3], left = 0;
+	int pieces = piece_ends(&q, end);
+	for (int i = 0; i < pieces; i++) {
+		double middle = 0.5 * (left + end[i]);
+		bool convex = q.c2 + middle * (3 * q.c3 + middle * 6 * q.c4) >= 0;
+		double s = convex ? convex_entry(&q, left, end[i]) : concave_entry(&q, left, end[i]);
+		if (s >= 0)
+			return s * horizon;
+		left = end[i];
+	}
+	return INFINITY;
+}
