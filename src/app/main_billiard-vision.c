@@ -9,7 +9,8 @@
 #include "app/process.h"
 #include "vision/vision.h"
 
-static const double FILE_FPS = 10;	/* frames per second made of files */
+static const double FILE_FPS = 10, CAMERA_FPS = 30;	/* 1/s */
+enum { DARK_FRAMES = 6 };	/* more than the controller forgives */
 static const double SILENCE = 1;	/* s without a frame until the table counts as unseen */
 enum { JPEG_QUALITY = 92, SOURCE_TICK_US = 500000 };
 
@@ -27,6 +28,9 @@ struct vision_process {
 	int64_t last_frame;		/* us, of the last frame, by the source's clock */
 	double last_arrival;		/* s, monotonic, when it came */
 	int64_t frames, bad;
+	bool folder;			/* source is a folder of photographs */
+	char picture[256];		/* the photograph shown */
+	int dark;			/* frames until it is looked at */
 	double rate;			/* 1/s, smoothed */
 	double latency, work;		/* s, of the last frame */
 };
@@ -129,13 +133,35 @@ static void publish_camera(struct vision_process *p)
 	bus_publish(p->process.bus, "CAMERA", &bus_image, &message);
 }
 
+/* A new photograph of a folder shows another table: a dark moment, so that nothing of the former one is kept. */
+static bool is_dark(struct vision_process *p)
+{
+	if (!p->folder)
+		return false;
+	if (strcmp(p->picture, p->frame.name) != 0) {
+		snprintf(p->picture, sizeof p->picture, "%s", p->frame.name);
+		vision_reset(p->vision);
+		p->dark = DARK_FRAMES;
+	}
+	return p->dark > 0 && p->dark-- > 0;
+}
+
+static void show_dark(struct vision_process *p)
+{
+	p->result = (struct vision_result){.calibration = CALIBRATION_NONE, .reason = "next photograph"};
+	publish_state(p, p->frame.utime, p->frame.seq);
+}
+
 static int on_source(sd_event_source *event, int fd, uint32_t events, void *context)
 {
 	(void)event, (void)fd, (void)events;
 	struct vision_process *p = context;
 	struct frame_source_figures f;
 	if (frame_source_take(p->source, &p->frame)) {
-		see(p, &p->frame.image.image, p->frame.utime, p->frame.seq);
+		if (is_dark(p))
+			show_dark(p);
+		else
+			see(p, &p->frame.image.image, p->frame.utime, p->frame.seq);
 		publish_camera(p);
 	}
 	frame_source_figures(p->source, &f);
@@ -192,14 +218,15 @@ static int open_source(struct vision_process *p, const struct process_options *o
 	const char *source = options->source ? options->source : p->config.source;
 	if (strncmp(source, "lcm:", 4) == 0) {
 		if (!source[4]) {
-			snprintf(err, err_size, "--source: \"%s\" names no channel", source);
+			snprintf(err, err_size, "--source: \"%.64s\" names no channel", source);
 			return -EINVAL;
 		}
 		return bus_subscribe(p->process.bus, source + 4, &bus_image, BUS_LATEST, on_camera, p);
 	}
 	struct frame_source_def def = {source, p->config.camera.width, p->config.camera.height, FILE_FPS, options->hold};
 	if (strncmp(source, "v4l2:", 5) == 0)
-		def.fps = 30;
+		def.fps = CAMERA_FPS;
+	p->folder = strncmp(source, "dir:", 4) == 0;
 	int r = frame_source_create(&p->source, &def, err, err_size);
 	return r < 0 ? r : sd_event_add_io(p->process.event, NULL, frame_source_descriptor(p->source), EPOLLIN, on_source, p);
 }

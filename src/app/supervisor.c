@@ -1,0 +1,172 @@
+#include "app/supervisor.h"
+
+#include <errno.h>
+#include <libgen.h>
+#include <limits.h>
+#include <signal.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+#include <sys/prctl.h>
+#include <sys/wait.h>
+#include <unistd.h>
+
+enum { RESTART_US = 500000, KILL_US = 3000000, ARGUMENT_MAX = 24 };
+
+void supervisor_init(struct supervisor *s, sd_event *event, const char *config, const char *bus)
+{
+	*s = (struct supervisor){.event = event, .config = config, .bus = bus};
+	sigset_t set;
+	sigemptyset(&set);
+	sigaddset(&set, SIGCHLD);
+	sigprocmask(SIG_BLOCK, &set, NULL);
+}
+
+/* In the child: becomes the program. Never returns. */
+static _Noreturn void become(const struct supervised *c, const char *path)
+{
+	char arguments[sizeof c->arguments];
+	char *argv[ARGUMENT_MAX + 6] = {(char *)c->name};
+	int argc = 1;
+	argv[argc++] = "-c";
+	argv[argc++] = (char *)c->supervisor->config;
+	if (c->supervisor->bus) {
+		argv[argc++] = "--bus";
+		argv[argc++] = (char *)c->supervisor->bus;
+	}
+	memcpy(arguments, c->arguments, sizeof arguments);
+	char *rest = NULL;
+	for (char *a = strtok_r(arguments, " ", &rest); a && argc < ARGUMENT_MAX; a = strtok_r(NULL, " ", &rest))
+		argv[argc++] = a;
+	argv[argc] = NULL;
+	sigset_t none;
+	sigemptyset(&none);
+	sigprocmask(SIG_SETMASK, &none, NULL);
+	/* Should this process be killed, its children must not stay behind. */
+	prctl(PR_SET_PDEATHSIG, SIGTERM);
+	execv(path, argv);
+	fprintf(stderr, "%s: %s\n", path, strerror(errno));
+	_exit(127);
+}
+
+static int on_child(sd_event_source *source, const siginfo_t *info, void *context);
+
+static int launch(struct supervised *c, char *err, size_t err_size)
+{
+	char self[PATH_MAX], path[PATH_MAX + 32];
+	ssize_t n = readlink("/proc/self/exe", self, sizeof self - 1);
+	if (n < 0) {
+		snprintf(err, err_size, "/proc/self/exe: %s", strerror(errno));
+		return -errno;
+	}
+	self[n] = '\0';
+	snprintf(path, sizeof path, "%s/%s", dirname(self), c->name);
+	if (access(path, X_OK) < 0) {
+		snprintf(err, err_size, "%s: %s", path, strerror(errno));
+		return -errno;
+	}
+	fflush(NULL);
+	pid_t pid = fork();
+	if (pid == 0)
+		become(c, path);
+	int r = pid < 0 ? -errno : sd_event_add_child(c->supervisor->event, &c->child, pid, WEXITED, on_child, c);
+	if (r < 0) {
+		snprintf(err, err_size, "%s: %s", c->name, strerror(-r));
+		return r;
+	}
+	c->pid = pid;
+	return 0;
+}
+
+static bool any_runs(const struct supervisor *s)
+{
+	for (int i = 0; i < s->count; i++)
+		if (s->service[i].pid)
+			return true;
+	return false;
+}
+
+static int on_restart(sd_event_source *source, uint64_t usec, void *context)
+{
+	(void)source, (void)usec;
+	struct supervised *c = context;
+	char err[PATH_MAX + 128];
+	c->restarts++;
+	if (!c->supervisor->stopping && launch(c, err, sizeof err) < 0)
+		fprintf(stderr, "billiard: %s\n", err);
+	return 0;
+}
+
+static int on_child(sd_event_source *source, const siginfo_t *info, void *context)
+{
+	(void)source;
+	struct supervised *c = context;
+	struct supervisor *s = c->supervisor;
+	c->pid = 0;
+	c->child = sd_event_source_unref(c->child);
+	if (s->stopping)
+		return any_runs(s) ? 0 : sd_event_exit(s->event, s->status);
+	bool bad_use = info->si_code == CLD_EXITED && info->si_status == 2;
+	fprintf(stderr, "billiard: %s ended (%s %d)%s\n", c->name, info->si_code == CLD_EXITED ? "status" : "signal", info->si_status,
+		bad_use ? ", not started again" : ", starting it again");
+	/* Status 2 is a wrong configuration or address: trying again changes nothing. */
+	if (bad_use)
+		return any_runs(s) ? 0 : sd_event_exit(s->event, 2);
+	c->restart = sd_event_source_unref(c->restart);
+	return sd_event_add_time_relative(s->event, &c->restart, CLOCK_MONOTONIC, RESTART_US, 0, on_restart, c);
+}
+
+int supervisor_start(struct supervisor *s, const char *name, const char *arguments, char *err, size_t err_size)
+{
+	if (s->count == SUPERVISOR_MAX) {
+		snprintf(err, err_size, "%s: more than %d services", name, SUPERVISOR_MAX);
+		return -ENOSPC;
+	}
+	struct supervised *c = &s->service[s->count++];
+	*c = (struct supervised){.supervisor = s};
+	snprintf(c->name, sizeof c->name, "%s", name);
+	snprintf(c->arguments, sizeof c->arguments, "%s", arguments);
+	return launch(c, err, err_size);
+}
+
+static void signal_all(struct supervisor *s, int number)
+{
+	for (int i = 0; i < s->count; i++)
+		if (s->service[i].pid)
+			kill(s->service[i].pid, number);
+}
+
+static int on_kill_timer(sd_event_source *source, uint64_t usec, void *context)
+{
+	(void)source, (void)usec;
+	signal_all(context, SIGKILL);
+	return 0;
+}
+
+void supervisor_stop(struct supervisor *s, int status)
+{
+	if (s->stopping)
+		return;
+	s->stopping = true;
+	s->status = status;
+	if (!any_runs(s)) {
+		sd_event_exit(s->event, status);
+		return;
+	}
+	signal_all(s, SIGTERM);
+	sd_event_add_time_relative(s->event, &s->kill_timer, CLOCK_MONOTONIC, KILL_US, 0, on_kill_timer, s);
+}
+
+void supervisor_finish(struct supervisor *s)
+{
+	signal_all(s, SIGKILL);
+	for (int i = 0; i < s->count; i++) {
+		struct supervised *c = &s->service[i];
+		sd_event_source_disable_unref(c->child);
+		sd_event_source_disable_unref(c->restart);
+		if (c->pid)
+			waitpid(c->pid, NULL, 0);
+	}
+	sd_event_source_disable_unref(s->kill_timer);
+	*s = (struct supervisor){0};
+}

@@ -1,0 +1,41 @@
+/* Starts the services of a table as child processes, starts one again that failed, and stops them all. For use without systemd. */
+#ifndef BILLIARD_APP_SUPERVISOR_H
+#define BILLIARD_APP_SUPERVISOR_H
+
+#include <stdbool.h>
+#include <stddef.h>
+#include <sys/types.h>
+#include <systemd/sd-event.h>
+
+enum { SUPERVISOR_MAX = 8 };
+
+struct supervised {
+	struct supervisor *supervisor;
+	char name[24];			/* program, found beside this one */
+	char arguments[256];		/* split at blanks */
+	pid_t pid;			/* 0: not running */
+	sd_event_source *child, *restart;	/* owned */
+	int restarts;
+};
+
+struct supervisor {
+	sd_event *event;		/* borrowed */
+	const char *config;		/* borrowed, passed on as -c */
+	const char *bus;		/* borrowed, passed on as --bus; NULL: not */
+	struct supervised service[SUPERVISOR_MAX];
+	int count;
+	bool stopping;
+	int status;			/* to exit with when all have gone */
+	sd_event_source *kill_timer;	/* owned */
+};
+
+/* Blocks SIGCHLD (sd-event needs that): call before other threads exist. */
+void supervisor_init(struct supervisor *s, sd_event *event, const char *config, const char *bus);
+/* 0, -ENOSPC, or a negative errno with the reason. */
+int supervisor_start(struct supervisor *s, const char *name, const char *arguments, char *err, size_t err_size);
+/* Asks all to end (SIGTERM, after three seconds SIGKILL); the event loop exits with status when the last has gone. */
+void supervisor_stop(struct supervisor *s, int status);
+/* Kills what still runs and waits for it; frees. */
+void supervisor_finish(struct supervisor *s);
+
+#endif
