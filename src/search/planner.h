@@ -10,7 +10,7 @@
 
 enum {
 	BATCH = 16,		/* nodes worked on at a time: never depends on the number of workers, so that results do not */
-	SPEEDS_MAX = 8,		/* start speeds of one candidate */
+	SPEEDS_MAX = 32,		/* start speeds of one candidate */
 	CHILDREN_MAX = 2048,	/* of one expansion */
 	STATES_MAX = 2048,
 	NO_STATE = -1

@@ -12,8 +12,8 @@ static void begin_record(const struct node *node, struct record *record)
 	record->search_cost = node->search_cost;
 	record->rails = node->rails;
 	record->chain_count = node->chain_count;
-	for (int i = 0; i < node->chain_count; i++)
-		record->chain[i] = node->chain[node->chain_count - 1 - i];
+	for (int i = 0; i < PLAN_CHAIN_MAX; i++)
+		record->chain[i] = i < node->chain_count ? node->chain[node->chain_count - 1 - i] : -1;
 	record->success = NAN;
 }
 

@@ -91,6 +91,7 @@ static bool play(struct planner *planner, const struct aim *aim, struct record *
 	record->target = aim->ball;	/* the ball named, for the judge */
 	record->chain[0] = (int16_t)planner->cue;
 	record->chain[1] = aim->ball;
+	record->chain[2] = record->chain[3] = -1;
 	record->chain_count = aim->ball >= 0 ? 2 : 1;
 	record->rails = aim->rails;
 	record->search_cost = aim->cost;
