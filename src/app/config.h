@@ -92,6 +92,9 @@ int config_load(struct config *config, const char *path, char *err, size_t err_s
 /* Profile of that name among config->profiles, NULL when there is none. */
 const struct cost_profile *config_profile(const struct config *config, const char *name);
 
+/* What a struct vision of this table is created from; borrows config and colours. */
+struct vision_def config_vision_def(const struct config *config, const struct colour_model *colours);
+
 /* Path used when no -c is given: $BILLIARD_CONF, ./config/thesis-table.conf, then the installed one. Never NULL. */
 const char *config_default_path(void);
 
