@@ -20,10 +20,10 @@ JOBS ?= $(shell nproc)
 PHYSICS := ball collide contact contact_ball_real contact_mathavan contact_stronge detect event inverse model motion queue \
 	roots sim table trace
 SEARCH := candidate cost frontier geometry plan play pool request respot rules safety shot step tolerance
-VISION := camera detect fit linear outline pose reason scan seeds
+VISION := camera colour detect fit linear outline pose reason scan seeds vision
 VISION_CV := capture_cv image_io_cv markers_cv
 # app: what the programs share
-APP := text_file config config_reader config_table position cmd cmd_simulate cmd_detect plot overlay draw draw_field draw_path draw_proposal render \
+APP := text_file config config_reader config_table config_vision position cmd cmd_simulate cmd_detect plot overlay draw draw_field draw_path draw_proposal render \
 	bus process fsm stability plan_message planner_service controller frame_source window supervisor cmd_run cmd_status cmd_demo
 # programs: src/app/main_NAME.c becomes build/NAME
 PROGRAMS := billiard-vision billiard-planner billiard-infinity billiard-projector

@@ -159,18 +159,6 @@ const struct cost_profile *config_profile(const struct config *config, const cha
 	return NULL;
 }
 
-struct vision_def config_vision_def(const struct config *config, const struct colour_model *colours)
-{
-	struct vision_def def = vision_def_default();
-	def.table = &config->table;
-	def.intrinsics = config->camera;
-	def.markers = config->markers;
-	def.marker_interval = config->marker_interval;
-	def.pose_keep = config->pose_keep;
-	def.colours = colours;
-	return def;
-}
-
 const char *config_default_path(void)
 {
 	static const char *const place[] = {"config/thesis-table.conf", BILLIARD_CONFIG_DIR "/thesis-table.conf",
