@@ -93,8 +93,8 @@ static void key_allowed(const struct config_key *key, char *out, size_t size)
 static int complain(struct config_reader *reader, const config_setting_t *at, const char *name, const char *found, const char *allowed)
 {
 	const char *file = config_setting_source_file(at) ? config_setting_source_file(at) : reader->path;
-	int line = config_setting_source_line(at);	/* 0 for the whole file */
-	snprintf(reader->err, reader->err_size, "%s:%d: %s: found %s, allowed %s", file, line ? line : 1, name, found, allowed);
+	unsigned line = config_setting_source_line(at);	/* 0 for the whole file */
+	snprintf(reader->err, reader->err_size, "%s:%u: %s: found %s, allowed %s", file, line ? line : 1, name, found, allowed);
 	return -EINVAL;
 }
 
