@@ -1,0 +1,182 @@
+#include "vision/fit.h"
+
+#include <math.h>
+#include <string.h>
+
+#include "vision/linear.h"
+
+enum { REACH_WIDE = 10, REACH_NARROW = 7 };	/* samples to either side of the rim */
+static const double STEP_SHARE = 1 / 31.0;	/* distance of samples over the radius: half a pixel at 15.5 px */
+static const double CONTRAST_MIN = 12;		/* levels; a weaker edge is noise */
+static const double CONTRAST_FULL = 40;
+static const double SCALE_PRIOR_PX = 0.35;	/* how far the apparent radius usually lies off, px */
+static const double EDGE_PX = 0.35;		/* how far a single edge usually lies off, px */
+static const double SUPPORT_PX = 1.1;		/* an edge this near is where it should be */
+
+struct edge {
+	bool hidden, found;
+	double offset;		/* px along the normal, outwards */
+	double weight;
+	double contrast;
+};
+
+/* Bilinear, BGR. False outside of the frame. */
+static inline bool sample(const struct image *im, double x, double y, float out[3])
+{
+	int ix = (int)floor(x), iy = (int)floor(y);
+	if (ix < 0 || iy < 0 || ix + 1 >= im->width || iy + 1 >= im->height)
+		return false;
+	float fx = (float)(x - ix), fy = (float)(y - iy);
+	const uint8_t *a = im->data + iy * im->stride + 3 * ix, *b = a + im->stride;
+	for (int c = 0; c < 3; c++) {
+		float top = (float)a[c] + fx * (float)(a[c + 3] - a[c]), bottom = (float)b[c] + fx * (float)(b[c + 3] - b[c]);
+		out[c] = top + fy * (bottom - top);
+	}
+	return true;
+}
+
+/* Where the profile v (1 inside, 0 outside) falls through a half nearest to the middle. */
+static bool half_crossing(const float *v, int count, double *at)
+{
+	double best = 1e9;
+	for (int j = 0; j + 1 < count; j++) {
+		if (!(v[j] >= 0.5f && v[j + 1] < 0.5f))
+			continue;
+		double t = j + (double)((v[j] - 0.5f) / (v[j] - v[j + 1])) - (count - 1) / 2.0;
+		if (fabs(t) < fabs(best))
+			best = t;
+	}
+	*at = best;
+	return best < 1e8;
+}
+
+/* Colours along the normal, inside first, projected onto the way from the outside's colour to the inside's. */
+static bool profile(const struct image *im, vec2 p, vec2 n, int reach, double step, float *v, double *contrast)
+{
+	int count = 2 * reach + 1, ends = reach / 2;
+	float colour[2 * REACH_WIDE + 1][3], in[3] = {0}, out[3] = {0}, d[3], dd = 0;
+	for (int j = 0; j < count; j++) {
+		double t = (j - reach) * step;
+		if (!sample(im, p.x + t * n.x, p.y + t * n.y, colour[j]))
+			return false;
+	}
+	for (int j = 0; j < ends; j++)
+		for (int c = 0; c < 3; c++) {
+			in[c] += colour[j][c] / (float)ends;
+			out[c] += colour[count - 1 - j][c] / (float)ends;
+		}
+	for (int c = 0; c < 3; c++) {
+		d[c] = in[c] - out[c];
+		dd += d[c] * d[c];
+	}
+	*contrast = sqrt((double)dd);
+	if (*contrast < CONTRAST_MIN)
+		return false;
+	for (int j = 0; j < count; j++)
+		v[j] = ((colour[j][0] - out[0]) * d[0] + (colour[j][1] - out[1]) * d[1] + (colour[j][2] - out[2]) * d[2]) / dd;
+	return true;
+}
+
+static bool hidden_by_neighbour(const struct fit_view *view, const struct fit *self, vec2 p)
+{
+	for (int i = 0; i < view->other_count; i++) {
+		const struct fit *o = &view->other[i];
+		if (o == self || vec2_dist(o->pos, self->pos) > 3 * view->radius ||
+		    vec2_dist(o->pos, self->pos) < 0.5 * view->radius)
+			continue;
+		if (vec2_dist(p, o->outline.centre) < o->outline.radius_px)
+			return true;
+	}
+	return false;
+}
+
+static void find_edges(const struct fit_view *view, struct fit *fit, int reach, struct edge edge[OUTLINE_POINTS])
+{
+	double step = fit->outline.radius_px * STEP_SHARE;
+	for (int i = 0; i < OUTLINE_POINTS; i++) {
+		vec2 p = fit->outline.point[i], n = fit->outline.normal[i];
+		float v[2 * REACH_WIDE + 1];
+		double at;
+		edge[i] = (struct edge){0};
+		edge[i].hidden = hidden_by_neighbour(view, fit, vec2_madd(p, 0.7 * reach * step, n));
+		if (edge[i].hidden || !profile(view->frame, p, n, reach, step, v, &edge[i].contrast) ||
+		    !half_crossing(v, 2 * reach + 1, &at))
+			continue;
+		edge[i].found = true;
+		edge[i].offset = at * step;
+		edge[i].weight = fmin(1, edge[i].contrast / CONTRAST_FULL);
+	}
+}
+
+/* Tukey's weights about the offsets that the present solution predicts. */
+static void solve_shift(const struct fit *fit, const struct edge edge[OUTLINE_POINTS], double cut, double shift[3])
+{
+	double px = fit->outline.radius_px, prior = EDGE_PX / SCALE_PRIOR_PX;
+	memset(shift, 0, 3 * sizeof(*shift));
+	for (int round = 0; round < 3; round++) {
+		double a[9] = {0}, b[3] = {0};
+		a[8] = prior * prior;
+		b[2] = -prior * prior * (fit->scale - 1) * px;
+		a[0] = a[4] = 1e-6;
+		for (int i = 0; i < OUTLINE_POINTS; i++) {
+			if (!edge[i].found)
+				continue;
+			double row[3] = {fit->outline.normal[i].x, fit->outline.normal[i].y, 1};
+			double off = edge[i].offset - row[0] * shift[0] - row[1] * shift[1] - shift[2];
+			double q = off / cut, w = edge[i].weight;
+			w *= round == 0 ? 1 / (1 + q * q) : fabs(q) < 1 ? (1 - q * q) * (1 - q * q) : 0;
+			for (int j = 0; j < 3; j++) {
+				b[j] += w * row[j] * edge[i].offset;
+				for (int k = 0; k < 3; k++)
+					a[3 * j + k] += w * row[j] * row[k];
+			}
+		}
+		if (!solve_spd(a, b, 3))
+			return;
+		memcpy(shift, b, sizeof(b));
+	}
+}
+
+static void judge(struct fit *fit, const struct edge edge[OUTLINE_POINTS])
+{
+	double good = 0, sum = 0, contrast = 0;
+	fit->rays = 0;
+	for (int i = 0; i < OUTLINE_POINTS; i++) {
+		fit->rays += !edge[i].hidden;
+		if (!edge[i].found || fabs(edge[i].offset) > SUPPORT_PX * fit->outline.radius_px / 15.5)
+			continue;
+		good++;
+		sum += edge[i].offset * edge[i].offset;
+		contrast += edge[i].contrast;
+	}
+	fit->support = fit->rays > 0 ? good / fit->rays : 0;
+	fit->residual_px = good > 0 ? sqrt(sum / good) : 0;
+	fit->contrast = good > 0 ? contrast / good : 0;
+}
+
+bool fit_refine(const struct fit_view *view, struct fit *fit, int steps)
+{
+	vec2 from = fit->pos;
+	struct edge edge[OUTLINE_POINTS];
+	for (int s = 0; s <= steps; s++) {
+		bool last = s == steps;
+		if (!outline_of_ball(view->camera, fit->pos, view->radius, fit->scale, &fit->outline))
+			return false;
+		find_edges(view, fit, s == 0 ? REACH_WIDE : REACH_NARROW, edge);
+		if (last)
+			break;
+		double shift[3], j[4];
+		solve_shift(fit, edge, (s == 0 ? 4 : 2) * fit->outline.radius_px / 15.5, shift);
+		if (!outline_jacobian(view->camera, fit->pos, view->radius, j))
+			return false;
+		double det = j[0] * j[3] - j[1] * j[2];
+		fit->pos.x += (j[3] * shift[0] - j[1] * shift[1]) / det;
+		fit->pos.y += (j[0] * shift[1] - j[2] * shift[0]) / det;
+		fit->scale += shift[2] / fit->outline.radius_px;
+		fit->scale = fmin(fmax(fit->scale, 0.85), 1.12);
+		if (!(vec2_dist(fit->pos, from) < 0.6 * view->radius))
+			return false;
+	}
+	judge(fit, edge);
+	return true;
+}

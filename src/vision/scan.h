@@ -1,0 +1,49 @@
+/* The quick look over a whole frame: a smaller copy of the bed, the cloth's colour per place, and how little each pixel
+ * looks like cloth (lit, shaded or plain). Everything finer is done by fit.h on the full frame. */
+#ifndef BILLIARD_VISION_SCAN_H
+#define BILLIARD_VISION_SCAN_H
+
+#include <stdbool.h>
+
+#include "physics/table.h"
+#include "vision/camera.h"
+#include "vision/image.h"
+
+enum {
+	SCAN_CELL = 16,		/* small pixels a side of a cell of the cloth's colour */
+	SCAN_FOREIGN = 128	/* marks from here on are not cloth */
+};
+
+struct scan {
+	int capacity;		/* small pixels there is room for */
+	int factor;		/* full pixels a side of a small one */
+	int x0, y0;		/* full pixel where the small picture begins */
+	int width, height;	/* small pixels */
+	int cells_x, cells_y;
+	uint8_t *bgr;		/* width x height x 3 */
+	uint8_t *mark;		/* 0 cloth .. 255 surely something else; 0 outside of the bed */
+	int16_t *row_from, *row_to;	/* columns [from, to) of the bed in each row */
+	float *cell;		/* cells_x x cells_y x 3: cloth, BGR */
+	float *cell_weight;
+	float cloth[3];		/* of the whole bed, BGR */
+};
+
+/* Room for frames of up to width x height at factor 1. 0 or -ENOMEM. */
+int scan_init(struct scan *scan, int width, int height);
+void scan_finish(struct scan *scan);
+
+/* Where the bed lies in the frame and how much smaller the copy is: call whenever the pose or the frame's size changes.
+ * False when the bed is not in the picture. */
+bool scan_place(struct scan *scan, const struct camera *camera, const struct table *table);
+/* Copies, learns the cloth, marks. False when nothing like an even cloth is seen (black, overexposed...). */
+bool scan_frame(struct scan *scan, const struct image *frame);
+/* Parts of the same for a tracked table: only the small pixels [x0, x1) x [y0, y1) are copied and marked again. */
+void scan_region(struct scan *scan, const struct image *frame, int x0, int y0, int x1, int y1);
+
+/* Cloth colour, BGR, at a full pixel. */
+void scan_cloth_at(const struct scan *scan, vec2 px, float out[3]);
+/* Full pixel of a small pixel's middle, and the reverse. */
+vec2 scan_to_full(const struct scan *scan, double x, double y);
+vec2 scan_from_full(const struct scan *scan, vec2 px);
+
+#endif
