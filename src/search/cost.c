@@ -25,6 +25,7 @@ struct cost_profile cost_profile_thesis(void)
 		.sigma_angle = 0.125 * M_PI / 180,
 		.sigma_speed = 0.05,
 		.program_speed = true,
+		.any_first = true,
 		.keep_flukes = true,
 	};
 }

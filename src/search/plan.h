@@ -25,6 +25,7 @@ struct cost_profile {
 	double sigma_angle, sigma_speed;	/* player's error, rad and share of the speed (1 sigma) */
 	bool rank_by_success;		/* false: the thesis' cost */
 	bool program_speed;		/* start speeds by 4.33 for every leg, as the thesis' program; false: both branches */
+	bool any_first;			/* do not ask which ball is struck first, as that program; false: by the rules */
 	bool keep_flukes;		/* keep legal pots that are not the intended one, named by what falls, as that program does */
 };
 /* The constants of the thesis' program (errata.md, last tables). */

@@ -137,7 +137,7 @@ static int penalty(const struct rules_state *state, const struct facts *facts, i
 	int least = larger(rule_table[state->on].least_foul, value_on(state, facts, nominated));
 	if (facts->first < 0 || facts->cue_potted)
 		foul = least;
-	if (facts->first >= 0 && !is_legal(state, facts, nominated, facts->first))
+	if (!state->any_first && facts->first >= 0 && !is_legal(state, facts, nominated, facts->first))
 		foul = larger(foul, larger(least, value_of(&facts->start[facts->first])));
 	for (int i = 0; i < facts->potted_count; i++)
 		if (!is_legal(state, facts, nominated, facts->potted[i]))
@@ -168,6 +168,7 @@ static struct rules_state next_state(const struct rules_state *state, const stru
 {
 	struct rules_state next = rules_state_from_position(out->ball, count);
 	next.in_hand = out->cue_potted;
+	next.any_first = state->any_first;
 	if (state->on == ON_ANY)
 		next.on = ON_ANY;
 	else if (potted && out->foul == 0) {

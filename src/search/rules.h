@@ -17,6 +17,7 @@ enum rules_on {
 struct rules_state {
 	enum rules_on on;
 	bool in_hand;		/* cue ball may be placed in the D */
+	bool any_first;		/* it does not matter which ball is struck first: not by the rules, but what the thesis' program does */
 };
 
 struct rules_outcome {

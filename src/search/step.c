@@ -64,11 +64,13 @@ static void set_scene(const struct planner *planner, struct state *state)
 		.ball = state->ball,
 		.count = planner->ball_count,
 		.cue = planner->cue,
-		.named = state->rules.on == ON_COLOUR,
+		.named = state->rules.on == ON_COLOUR && !state->rules.any_first,
 		.rails = request->rails,
 		.balls = request->balls,
 	};
 	for (int i = 0; i < scene->count; i++) {
+		if (state->rules.any_first && i != scene->cue)
+			scene->on |= 1u << i;
 		if (!rules_ball_on(&state->rules, state->ball, scene->count, i))
 			continue;
 		scene->on |= 1u << i;
@@ -95,6 +97,7 @@ static void add_root_state(struct planner *planner, vec2 cue)
 	const struct plan_request *request = planner->request;
 	*state = (struct state){.rules = first_rules(planner), .parent = NO_STATE};
 	state->rules.in_hand = false;
+	state->rules.any_first = planner->def.profile.any_first;
 	for (int i = 0; i < request->ball_count; i++)
 		state->ball[i] = request->ball[i];
 	state->ball[planner->cue] = ball_at(COLOUR_WHITE, cue);
