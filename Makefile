@@ -21,19 +21,23 @@ PHYSICS := ball collide contact contact_ball_real contact_mathavan contact_stron
 	roots sim table trace
 SEARCH := candidate cost frontier geometry plan play pool request respot rules safety shot step tolerance
 VISION := camera colour detect fit linear outline pose reason scan seeds vision
-VISION_CV := capture_cv image_io_cv markers_cv
+VISION_CV := capture_cv image_io_cv markers_cv marker_image_cv
 # app: what the programs share
-APP := text_file config config_reader config_table config_vision position cmd cmd_simulate cmd_detect plot overlay draw draw_field draw_path draw_proposal render \
+APP := text_file colour_file cmd_calibrate config config_reader config_table config_vision position cmd cmd_simulate cmd_detect plot overlay draw draw_field draw_path draw_proposal render \
+	table_scene table_camera table_camera_ball \
 	bus process fsm stability plan_message planner_service controller frame_source window supervisor cmd_run cmd_status cmd_demo
 # programs: src/app/main_NAME.c becomes build/NAME
 PROGRAMS := billiard-vision billiard-planner billiard-infinity billiard-projector
 # tests/test_NAME.c each; tests/NAME.c shared by them
-TESTS := draw render
+TESTS := config position draw render contact_real contact_recorded
 TEST_SHARED := harness scenes
 # tests that are scripts: tests/NAME.sh, called with the build folder
 TEST_SCRIPTS :=
 # bench/bench_NAME.c each
 BENCHES :=
+# fuzz/fuzz_NAME.c each, seeds in fuzz/corpus/NAME
+FUZZERS := position config
+FUZZ_SECONDS ?= 20
 LCM_TYPES := animation_t ball_t command_t draw_list_t draw_item_t image_t keyframe_t plan_t plan_entry_t plan_shot_t \
 	plan_request_t status_t metric_t table_state_t
 
@@ -68,9 +72,10 @@ TEST_SHARED_O := $(call obj,tests,$(TEST_SHARED))
 ARCHIVES := $(BUILD)/libapp.a $(BUILD)/liblcmtypes.a $(BUILD)/libsearch.a $(BUILD)/libvision.a $(BUILD)/libphysics.a
 PROGRAM_BINS := $(addprefix $(BUILD)/,$(PROGRAMS))
 TEST_BINS := $(patsubst %,$(BUILD)/tests/test_%,$(TESTS))
+FUZZ_BINS := $(patsubst %,$(BUILD)/fuzz_%,$(FUZZERS))
 BENCH_BINS := $(patsubst %,$(BUILD)/bench/bench_%,$(BENCHES))
 
-.PHONY: all demo check check-built bench eval fuzz headers lint install clean setup tests programs
+.PHONY: all demo check check-built bench eval fuzz fuzzers headers lint install clean setup tests programs
 .SECONDARY:
 .DELETE_ON_ERROR:
 
@@ -102,6 +107,10 @@ $(BUILD)/bench/%.o: bench/%.cc
 	@mkdir -p $(@D)
 	$(CXX) $(CXXFLAGS_ALL) $(CV_CFLAGS) -c $< -o $@
 
+$(BUILD)/fuzz/%.o: fuzz/%.c
+	@mkdir -p $(@D)
+	$(CC) $(CFLAGS_ALL) $(APP_CFLAGS) -c $< -o $@
+
 # Only the application sees LCM, libconfig, Cairo, SDL and systemd.
 $(BUILD)/src/app/%.o: MODULE_CFLAGS = $(APP_CFLAGS) -DBILLIARD_CONFIG_DIR='"$(SYSCONFDIR)"'
 
@@ -121,6 +130,8 @@ $(BUILD)/tests/test_%: $(BUILD)/tests/test_%.o $(TEST_SHARED_O) $(ARCHIVES)
 	$(link) $(TEST_LIBS) $(LIBS)
 $(BUILD)/bench/bench_%: $(BUILD)/bench/bench_%.o $(TEST_SHARED_O) $(ARCHIVES)
 	$(link) $(TEST_LIBS) $(LIBS)
+$(BUILD)/fuzz_%: $(BUILD)/fuzz/fuzz_%.o $(ARCHIVES)
+	$(link) -fsanitize=fuzzer $(LIBS)
 $(PROGRAM_BINS): $(BUILD)/%: $(BUILD)/src/app/main_%.o $(ARCHIVES)
 	$(link) $(LIBS)
 
@@ -143,6 +154,24 @@ check-built: headers
 bench: setup
 	+@$(MAKE) --no-print-directory -j$(JOBS) programs $(BENCH_BINS)
 	@DATA=$(DATA) scripts/run-bench $(BUILD) $(BENCHES)
+
+# clang's libFuzzer (packages clang and libclang-rt-14-dev), everything in a folder of its own.
+fuzz:
+	+@$(MAKE) --no-print-directory -j$(JOBS) BUILD=$(BUILD)/fuzz SAN=address,undefined CC=clang CXX=clang++ OPT=-O1 \
+		CFLAGS=-fsanitize=fuzzer-no-link CXXFLAGS=-fsanitize=fuzzer-no-link fuzzers
+	@scripts/run-fuzz $(BUILD)/fuzz $(FUZZ_SECONDS) $(FUZZERS)
+fuzzers: $(FUZZ_BINS)
+
+# Static checks (package cppcheck; shellcheck where it is installed).
+lint:
+	cppcheck --quiet --error-exitcode=1 --std=c17 --enable=warning,performance,portability --inline-suppr -j$(JOBS) \
+		--suppressions-list=scripts/cppcheck-suppressions -D_GNU_SOURCE -DBILLIARD_CONFIG_DIR='""' -Isrc src tests bench fuzz
+	@if command -v shellcheck >/dev/null; then shellcheck $$(grep -lE '^#!/bin/(ba)?sh' scripts/* .ci/*) tests/*.sh; \
+		else echo "lint: shellcheck is not installed, scripts are not checked"; fi
+
+# DESTDIR stages, PREFIX and SYSCONFDIR decide; installed files name the final places. Existing configurations are kept as FILE.new beside them.
+install: programs
+	@scripts/install-files $(BUILD) "$(DESTDIR)" "$(PREFIX)" "$(SYSCONFDIR)" $(PROGRAMS)
 
 headers:
 	@CC="$(CC)" BUILD=$(BUILD) scripts/check-headers

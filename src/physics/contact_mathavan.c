@@ -3,45 +3,48 @@
 #include "physics/contact_real.h"
 
 /* Frame of the paper: x along the cushion, y into it, z up. The ball touches the nose at I, radius (0, c, s) from its
- * centre, and the cloth at C, radius (0, 0, -1). The normal impulse P at I is the variable of integration; all impulses
- * are per unit mass (m/s). Friction at I acts along e1 = x and e2 = (0, -s, c). */
+ * centre, and the cloth at C, radius (0, 0, -1). The normal impulse P at I, per unit mass (m/s), is the variable of
+ * integration. Friction at I acts along e1 = x and e2 = (0, -s, c).
+ *
+ * The slip of the ball's surface at I (e1, e2) and C (x, y) is all that the friction depends on, and the velocity into the
+ * cushion follows from it: vy = (C2 - I2) / (1 + s). So the state is these four and the work done by the normal impulse.
+ * While a slip is small its direction obeys a stiff equation: hence an L-stable method. */
 
-enum { F1, F2, G1, G2, WORK, DIM };	/* friction impulses at I and C, work of the normal impulse at I per mass */
+enum { I1, I2, C1, C2, WORK, DIM, SLIPS = WORK };
 enum place { NOSE, CLOTH };
 
 struct impact {
 	double s, c;			/* sine and cosine of the nose's angle above the centre */
-	double mu_nose, mu_cloth;
-	double slip0[2][2], vy0;	/* before: slip at I (e1, e2) and C (x, y), velocity into the cushion */
+	double mu[2];
 	bool stick[2];
-	vec2 onset[2];			/* direction in which slip begins after sticking, while too small to have one; else 0 */
+	vec2 onset[2];			/* where slip begins after sticking and has no direction yet, the one it takes; else 0 */
 	double rest_slip;		/* m/s: smaller slip counts as none */
-	double p, y[DIM];
+	double z[DIM];
 };
 
-struct rates {
-	vec2 nose, cloth;	/* friction at I and C per unit normal impulse at I */
+struct friction {
+	vec2 nose, cloth;	/* per unit normal impulse at I */
 };
 
-static vec2 impact_slip(const struct impact *im, enum place place, double p, const double y[DIM])
+static vec2 slip_of(const double z[DIM], enum place place)
 {
-	double s = im->s, c = im->c;
-	const double *s0 = im->slip0[place];
-	if (place == NOSE)
-		return (vec2){s0[0] + 3.5 * y[F1] + (1 - 2.5 * s) * y[G1],
-			      s0[1] + s * c * p + (2.5 + s * s) * y[F2] + (2.5 - s) * y[G2]};
-	return (vec2){s0[0] + (1 - 2.5 * s) * y[F1] + 3.5 * y[G1], s0[1] - c * p + (2.5 - s) * y[F2] + 3.5 * y[G2]};
+	return place == NOSE ? (vec2){z[I1], z[I2]} : (vec2){z[C1], z[C2]};
 }
 
-static double impact_vy(const struct impact *im, double p, const double y[DIM])
+static double velocity_into(const struct impact *im, const double z[DIM])
 {
-	return im->vy0 - im->c * p - im->s * y[F2] + y[G2];
+	return (z[C2] - z[I2]) / (1 + im->s);
 }
 
-/* Load on the cloth per unit normal impulse at I: the nose presses the ball down, the cloth bears it. */
+/* Load on the cloth: the nose presses the ball down, the cloth bears it. */
 static double cloth_load(const struct impact *im, vec2 nose)
 {
 	return fmax(im->s - im->c * nose.y, 0);
+}
+
+static double most_friction(const struct impact *im, enum place place, const struct friction *f)
+{
+	return place == NOSE ? im->mu[NOSE] : im->mu[CLOTH] * cloth_load(im, f->nose);
 }
 
 static vec2 clamp_length(vec2 a, double most)
@@ -51,111 +54,211 @@ static vec2 clamp_length(vec2 a, double most)
 }
 
 /* Friction that keeps the slip at one place as it is, given the friction at the other. */
-static vec2 holding_nose(const struct impact *im, vec2 cloth)
+static vec2 holding_friction(const struct impact *im, enum place place, const struct friction *f)
 {
-	double s = im->s;
-	return (vec2){-(1 - 2.5 * s) * cloth.x / 3.5, -(s * im->c + (2.5 - s) * cloth.y) / (2.5 + s * s)};
+	double s = im->s, c = im->c, coupling = -(1 - 2.5 * s) / 3.5;
+	if (place == NOSE)
+		return (vec2){coupling * f->cloth.x, -(s * c + (2.5 - s) * f->cloth.y) / (2.5 + s * s)};
+	return (vec2){coupling * f->nose.x, (c - (2.5 - s) * f->nose.y) / 3.5};
 }
 
-static vec2 holding_cloth(const struct impact *im, vec2 nose)
+static vec2 slip_direction(const struct impact *im, const double z[DIM], enum place place)
 {
-	double s = im->s;
-	return (vec2){-(1 - 2.5 * s) * nose.x / 3.5, (im->c - (2.5 - s) * nose.y) / 3.5};
-}
-
-static vec2 slip_direction(const struct impact *im, enum place place, vec2 slip)
-{
+	vec2 slip = slip_of(z, place);
 	double n = vec2_norm(slip);
 	bool begins = n <= im->rest_slip && vec2_norm2(im->onset[place]) > 0;
 	return begins || n == 0 ? im->onset[place] : vec2_scale(slip, 1 / n);
 }
 
-/* Friction at both places. Where one sticks it depends on the other's and, through the load, the other on it: a contraction
- * (factor well below one half), repeated to rounding. */
-static struct rates friction_rates(const struct impact *im, vec2 slip_nose, vec2 slip_cloth)
+/* Friction at both places. Where the nose sticks it depends on the cloth's and, through the load, the cloth's on it: a
+ * contraction, repeated to rounding. */
+static struct friction friction_at(const struct impact *im, const double z[DIM])
 {
-	struct rates r = {{0, 0}, {0, 0}};
-	vec2 d = slip_direction(im, NOSE, slip_nose), q = slip_direction(im, CLOTH, slip_cloth);
-	int rounds = im->stick[NOSE] ? 40 : 1;
+	struct friction f = {{0, 0}, {0, 0}};
+	vec2 q = slip_direction(im, z, CLOTH);
 	if (!im->stick[NOSE])
-		r.nose = vec2_scale(d, -im->mu_nose);
-	for (int i = 0; i < rounds; i++) {
-		vec2 before = r.nose;
-		double most = im->mu_cloth * cloth_load(im, r.nose);
-		r.cloth = im->stick[CLOTH] ? clamp_length(holding_cloth(im, r.nose), most) : vec2_scale(q, -most);
-		if (im->stick[NOSE])
-			r.nose = clamp_length(holding_nose(im, r.cloth), im->mu_nose);
-		if (vec2_dist(before, r.nose) <= 1e-15)
+		f.nose = vec2_scale(slip_direction(im, z, NOSE), -im->mu[NOSE]);
+	for (int i = 0; i < 60; i++) {
+		vec2 before = f.nose;
+		double most = most_friction(im, CLOTH, &f);
+		f.cloth = im->stick[CLOTH] ? clamp_length(holding_friction(im, CLOTH, &f), most) : vec2_scale(q, -most);
+		if (!im->stick[NOSE])
+			break;
+		f.nose = clamp_length(holding_friction(im, NOSE, &f), im->mu[NOSE]);
+		if (vec2_dist(before, f.nose) <= 1e-15)
 			break;
 	}
-	return r;
+	return f;
 }
 
-static void derivative(const struct impact *im, double p, const double y[DIM], double out[DIM])
+/* What friction adds to the four slips per unit normal impulse. */
+static void spread(const struct impact *im, const struct friction *f, double out[SLIPS])
 {
-	struct rates r = friction_rates(im, impact_slip(im, NOSE, p, y), impact_slip(im, CLOTH, p, y));
-	out[F1] = r.nose.x;
-	out[F2] = r.nose.y;
-	out[G1] = r.cloth.x;
-	out[G2] = r.cloth.y;
-	out[WORK] = im->c * impact_vy(im, p, y);
+	double s = im->s, coupling = 1 - 2.5 * s;
+	out[I1] = 3.5 * f->nose.x + coupling * f->cloth.x;
+	out[I2] = (2.5 + s * s) * f->nose.y + (2.5 - s) * f->cloth.y;
+	out[C1] = coupling * f->nose.x + 3.5 * f->cloth.x;
+	out[C2] = (2.5 - s) * f->nose.y + 3.5 * f->cloth.y;
 }
 
-/* Dormand and Prince 5(4). */
-static const double STAGE[6][6] = {
-	{1.0 / 5},
-	{3.0 / 40, 9.0 / 40},
-	{44.0 / 45, -56.0 / 15, 32.0 / 9},
-	{19372.0 / 6561, -25360.0 / 2187, 64448.0 / 6561, -212.0 / 729},
-	{9017.0 / 3168, -355.0 / 33, 46732.0 / 5247, 49.0 / 176, -5103.0 / 18656},
-	{35.0 / 384, 0, 500.0 / 1113, 125.0 / 192, -2187.0 / 6784, 11.0 / 84},
-};
-static const double NODE[6] = {1.0 / 5, 3.0 / 10, 4.0 / 5, 8.0 / 9, 1, 1};
-static const double ERROR[7] = {71.0 / 57600, 0, -71.0 / 16695, 71.0 / 1920, -17253.0 / 339200, 22.0 / 525, -1.0 / 40};
-
-/* One step of h from im, whose derivative is k0. Fills y and returns the estimated error in m/s. */
-static double step(const struct impact *im, double h, const double k0[DIM], double y[DIM])
+static void slip_rates(const struct impact *im, const struct friction *f, double out[SLIPS])
 {
-	double k[7][DIM];
-	for (int i = 0; i < DIM; i++)
-		k[0][i] = k0[i];
-	for (int stage = 0; stage < 6; stage++) {
-		for (int i = 0; i < DIM; i++) {
-			double sum = 0;
-			for (int j = 0; j <= stage; j++)
-				sum += STAGE[stage][j] * k[j][i];
-			y[i] = im->y[i] + h * sum;
+	spread(im, f, out);
+	out[I2] += im->s * im->c;
+	out[C2] -= im->c;
+}
+
+static void derivative(const struct impact *im, const double z[DIM], double out[DIM])
+{
+	struct friction f = friction_at(im, z);
+	slip_rates(im, &f, out);
+	out[WORK] = im->c * velocity_into(im, z);
+}
+
+/* Change of a slip's direction with a change of the slip. */
+static vec2 direction_change(const struct impact *im, enum place place, vec2 change)
+{
+	vec2 slip = slip_of(im->z, place);
+	double n = vec2_norm(slip);
+	if (im->stick[place] || n <= im->rest_slip)
+		return (vec2){0, 0};
+	return vec2_scale(vec2_perp(slip), vec2_cross(slip, change) / (n * n * n));
+}
+
+/* Change of friction_at() with a change of the slips; f is the friction itself. */
+static struct friction friction_change(const struct impact *im, const struct friction *f, const double change[DIM])
+{
+	double s = im->s, coupling = -(1 - 2.5 * s) / 3.5, load = cloth_load(im, f->nose), mu = im->mu[CLOTH];
+	vec2 q = slip_direction(im, im->z, CLOTH), dq = direction_change(im, CLOTH, slip_of(change, CLOTH));
+	struct friction d = {vec2_scale(direction_change(im, NOSE, slip_of(change, NOSE)), -im->mu[NOSE]), {0, 0}};
+	if (im->stick[CLOTH]) {
+		d.cloth = (vec2){coupling * d.nose.x, -(2.5 - s) / 3.5 * d.nose.y};
+	} else if (im->stick[NOSE]) {
+		double give = (2.5 - s) / (2.5 + s * s);
+		d.cloth.y = -mu * load * dq.y / (1 + mu * im->c * give * q.y);
+		d.nose.y = -give * d.cloth.y;
+		d.cloth.x = -mu * load * dq.x + mu * im->c * q.x * d.nose.y;
+		d.nose.x = coupling * d.cloth.x;
+	} else {
+		d.cloth = vec2_scale(dq, -mu * load);
+		if (load > 0)
+			d.cloth = vec2_madd(d.cloth, mu * im->c * d.nose.y, q);
+	}
+	return d;
+}
+
+static void jacobian(const struct impact *im, double j[SLIPS][SLIPS])
+{
+	struct friction f = friction_at(im, im->z);
+	for (int column = 0; column < SLIPS; column++) {
+		double change[DIM] = {0}, out[SLIPS];
+		change[column] = 1;
+		struct friction d = friction_change(im, &f, change);
+		spread(im, &d, out);
+		for (int row = 0; row < SLIPS; row++)
+			j[row][column] = out[row];
+	}
+}
+
+/* Inverse by Gauss and Jordan with row exchange; the matrix 1/(h gamma) - J has no small pivots left then. */
+static void invert(double a[SLIPS][SLIPS], double out[SLIPS][SLIPS])
+{
+	for (int i = 0; i < SLIPS; i++)
+		for (int k = 0; k < SLIPS; k++)
+			out[i][k] = i == k;
+	for (int i = 0; i < SLIPS; i++) {
+		int pivot = i;
+		for (int k = i + 1; k < SLIPS; k++)
+			if (fabs(a[k][i]) > fabs(a[pivot][i]))
+				pivot = k;
+		double scale = 1 / a[pivot][i];
+		for (int k = 0; k < SLIPS; k++) {
+			double x = a[pivot][k], y = out[pivot][k];
+			a[pivot][k] = a[i][k];
+			out[pivot][k] = out[i][k];
+			a[i][k] = x * scale;
+			out[i][k] = y * scale;
 		}
-		derivative(im, im->p + h * NODE[stage], y, k[stage + 1]);
+		for (int k = 0; k < SLIPS; k++) {
+			double factor = a[k][i];
+			for (int l = 0; k != i && l < SLIPS; l++) {
+				a[k][l] -= factor * a[i][l];
+				out[k][l] -= factor * out[i][l];
+			}
+		}
+	}
+}
+
+/* Rosenbrock method RODAS of order 4 with an embedded one of order 3 (Hairer and Wanner, Solving ODEs II, IV.7). */
+static const double GAMMA = 0.25;
+static const double STAGE[5][5] = {
+	{0},
+	{1.544},
+	{0.9466785280815826, 0.2557011698983284},
+	{3.314825187068521, 2.896124015972201, 0.9986419139977817},
+	{1.221224509226641, 6.019134481288629, 12.53708332932087, -0.6878860361058950},
+};
+static const double COUPLE[6][5] = {
+	{0},
+	{-5.6688},
+	{-2.430093356833875, -0.2063599157091915},
+	{-0.1073529058151375, -9.594562251023355, -20.47028614809616},
+	{7.496443313967647, -10.24680431464352, -33.99990352819905, 11.70890893206160},
+	{8.083246795921522, -7.981132988064893, -31.52159432874371, 16.31930543123136, -6.058818238834054},
+};
+
+/* Stage equation: slips by the inverted matrix, then the work, which depends on the slips only. */
+static void solve_stage(const struct impact *im, double h, double inverse[SLIPS][SLIPS], const double right[DIM], double k[DIM])
+{
+	for (int i = 0; i < SLIPS; i++) {
+		k[i] = 0;
+		for (int l = 0; l < SLIPS; l++)
+			k[i] += inverse[i][l] * right[l];
+	}
+	k[WORK] = GAMMA * h * (right[WORK] + im->c * velocity_into(im, k));
+}
+
+/* One step of h; fills z and returns the estimated error in m/s. */
+static double step(const struct impact *im, double h, double j[SLIPS][SLIPS], double z[DIM])
+{
+	double matrix[SLIPS][SLIPS], inverse[SLIPS][SLIPS], k[6][DIM];
+	for (int i = 0; i < SLIPS; i++)
+		for (int l = 0; l < SLIPS; l++)
+			matrix[i][l] = (i == l ? 1 / (h * GAMMA) : 0) - j[i][l];
+	invert(matrix, inverse);
+	for (int i = 0; i < DIM; i++)
+		z[i] = im->z[i];
+	for (int stage = 0; stage < 6; stage++) {
+		double right[DIM];
+		for (int i = 0; i < DIM && stage > 0; i++) {
+			z[i] = stage == 5 ? z[i] + k[4][i] : im->z[i];
+			for (int l = 0; l < stage && stage < 5; l++)
+				z[i] += STAGE[stage][l] * k[l][i];
+		}
+		derivative(im, z, right);
+		for (int i = 0; i < DIM; i++)
+			for (int l = 0; l < stage; l++)
+				right[i] += COUPLE[stage][l] / h * k[l][i];
+		solve_stage(im, h, inverse, right, k[stage]);
 	}
 	double error = 0;
-	for (int i = 0; i < WORK; i++) {
-		double sum = 0;
-		for (int j = 0; j < 7; j++)
-			sum += ERROR[j] * k[j][i];
-		error = fmax(error, fabs(h * sum));
+	for (int i = 0; i < DIM; i++) {
+		z[i] += k[5][i];
+		if (i < SLIPS)
+			error = fmax(error, fabs(k[5][i]));
 	}
 	return error;
 }
 
-/* Rate of change of the slip at one place per unit normal impulse. */
-static vec2 slip_rate(const struct impact *im, enum place place, const struct rates *r)
-{
-	struct impact zero = {.s = im->s, .c = im->c};
-	double y[DIM] = {r->nose.x, r->nose.y, r->cloth.x, r->cloth.y, 0};
-	return impact_slip(&zero, place, 1, y);
-}
-
 /* Slip begins in the direction in which friction against it leaves it growing. */
-static vec2 onset_direction(const struct impact *im, enum place place, struct rates r, vec2 holding, double most)
+static vec2 onset_direction(const struct impact *im, enum place place, struct friction f, vec2 holding, double most)
 {
 	vec2 direction = vec2_unit(vec2_scale(holding, -1));
 	for (int i = 0; i < 40; i++) {
-		if (place == NOSE)
-			r.nose = vec2_scale(direction, -most);
-		else
-			r.cloth = vec2_scale(direction, -most);
-		direction = vec2_unit(slip_rate(im, place, &r));
+		double rates[DIM];
+		*(place == NOSE ? &f.nose : &f.cloth) = vec2_scale(direction, -most);
+		slip_rates(im, &f, rates);
+		direction = vec2_unit(slip_of(rates, place));
 	}
 	return direction;
 }
@@ -165,82 +268,74 @@ static void choose_modes(struct impact *im)
 {
 	for (int place = NOSE; place <= CLOTH; place++) {
 		im->onset[place] = (vec2){0, 0};
-		if (vec2_norm(impact_slip(im, (enum place)place, im->p, im->y)) <= im->rest_slip)
+		if (vec2_norm(slip_of(im->z, (enum place)place)) <= im->rest_slip)
 			im->stick[place] = true;
 	}
 	for (int place = NOSE; place <= CLOTH; place++) {
 		if (!im->stick[place])
 			continue;
-		struct rates r = friction_rates(im, impact_slip(im, NOSE, im->p, im->y), impact_slip(im, CLOTH, im->p, im->y));
-		vec2 holding = place == NOSE ? holding_nose(im, r.cloth) : holding_cloth(im, r.nose);
-		double most = place == NOSE ? im->mu_nose : im->mu_cloth * cloth_load(im, r.nose);
+		struct friction f = friction_at(im, im->z);
+		vec2 holding = holding_friction(im, (enum place)place, &f);
+		double most = most_friction(im, (enum place)place, &f);
 		if (vec2_norm(holding) > most * (1 + 1e-12)) {
 			im->stick[place] = false;
-			im->onset[place] = onset_direction(im, (enum place)place, r, holding, most);
+			im->onset[place] = onset_direction(im, (enum place)place, f, holding, most);
 		}
 	}
 }
 
 /* A step must not carry a slip through zero, where friction turns round: nine tenths of the way at most. */
-static double slip_limit(const struct impact *im, const double k0[DIM])
+static double slip_limit(const struct impact *im, const double rates[DIM])
 {
-	struct rates r = {{k0[F1], k0[F2]}, {k0[G1], k0[G2]}};
 	double limit = INFINITY;
 	for (int place = NOSE; place <= CLOTH; place++) {
-		vec2 slip = impact_slip(im, (enum place)place, im->p, im->y);
+		vec2 slip = slip_of(im->z, (enum place)place);
 		double size = vec2_norm(slip);
 		if (im->stick[place] || size <= im->rest_slip)
 			continue;
-		double rate = vec2_dot(slip, slip_rate(im, (enum place)place, &r)) / size;
+		double rate = vec2_dot(slip, slip_of(rates, (enum place)place)) / size;
 		if (rate < 0)
 			limit = fmin(limit, 0.9 * size / -rate);
 	}
 	return limit;
 }
 
-/* Normal impulse until the work reaches target if vy went on changing as it does now; INFINITY if it never does. The work
- * falls during restitution (vy < 0). */
-static double restitution_left(const struct impact *im, double target, const double k0[DIM])
+/* Normal impulse until the compression ends (target NAN) or the work has fallen to target, if vy went on changing as it does
+ * now; INFINITY if it never would. */
+static double impulse_left(const struct impact *im, double target, const double rates[DIM])
 {
-	double vy = impact_vy(im, im->p, im->y), rate = -im->c - im->s * k0[F2] + k0[G2];
-	double left = (im->y[WORK] - target) / im->c;
-	double root = vy * vy - 2 * rate * left;
-	if (left <= 0 || root <= 0)
-		return left <= 0 ? 0 : INFINITY;
-	double speed = fmax(-vy, 0) + sqrt(root);
+	double vy = velocity_into(im, im->z), rate = velocity_into(im, rates);
+	if (isnan(target))
+		return vy <= 0 ? 0 : rate < 0 ? vy / -rate : INFINITY;
+	double left = (im->z[WORK] - target) / im->c, root = vy * vy - 2 * rate * left;
+	if (left <= 0)
+		return 0;
+	double speed = fmax(-vy, 0) + sqrt(fmax(root, 0));
 	return speed > 0 ? 2 * left / speed : INFINITY;
 }
 
-static double compression_left(const struct impact *im, const double k0[DIM])
-{
-	double vy = impact_vy(im, im->p, im->y), rate = -im->c - im->s * k0[F2] + k0[G2];
-	if (vy <= 0)
-		return 0;
-	return rate < 0 ? vy / -rate : INFINITY;
-}
-
+/* Shares of the speed before. Error estimate allowed a step: the result is good to about ten times less. A slip that counts
+ * as none. Reached only where friction wedges the ball in for good: STEPS_MAX. */
+static const double TOLERANCE = 1e-7, REST_SLIP = 1e-6;
 enum { STEPS_MAX = 2000 };
 
-/* Integrates until the compression ends (target NAN) or the work has fallen to target. tolerance: m/s a step, and what
- * is left of the phase when it counts as over. STEPS_MAX is reached only where friction wedges the ball in for good. */
-static void integrate(struct impact *im, double target, double tolerance)
+/* Integrates to the end of a phase; scale: speed before, m/s. */
+static void integrate(struct impact *im, double target, double scale)
 {
-	double h = INFINITY;
+	double h = scale;
 	for (int n = 0; n < STEPS_MAX; n++) {
 		choose_modes(im);
-		double k0[DIM], y[DIM];
-		derivative(im, im->p, im->y, k0);
-		double left = isnan(target) ? compression_left(im, k0) : restitution_left(im, target, k0);
-		if (left <= tolerance)
+		double rates[DIM], z[DIM], j[SLIPS][SLIPS];
+		derivative(im, im->z, rates);
+		double left = impulse_left(im, target, rates);
+		if (left <= 1e-9 * scale)
 			return;
-		h = fmin(fmin(h, slip_limit(im, k0)), fmin(left, 0.25 * im->vy0));
-		double error = step(im, h, k0, y);
-		if (error <= tolerance) {
-			im->p += h;
-			for (int i = 0; i < DIM; i++)
-				im->y[i] = y[i];
-		}
-		h *= fmin(4, fmax(0.2, 0.8 * pow(tolerance / fmax(error, 1e-300), 0.2)));
+		jacobian(im, j);
+		h = fmin(fmin(h, slip_limit(im, rates)), left);
+		double error = step(im, h, j, z);
+		for (int i = 0; i < DIM && error <= TOLERANCE * scale; i++)
+			im->z[i] = z[i];
+		h *= fmin(5, fmax(0.2, 0.85 * sqrt(sqrt(TOLERANCE * scale / fmax(error, 1e-300)))));
 	}
 }
 
@@ -248,7 +343,6 @@ void contact_cushion_mathavan(const struct table *table, vec2 normal, double nos
 {
 	const struct material *m = &table->material;
 	double r = table->ball_radius;
-	assert(nose_height > 0 && nose_height < 2 * r);
 	vec2 into = vec2_scale(normal, -1), along = {into.y, -into.x};
 	double vx = vec2_dot(along, ball->vel), vy = vec2_dot(into, ball->vel);
 	double wx = r * (along.x * ball->spin[0] + along.y * ball->spin[1]);
@@ -257,21 +351,23 @@ void contact_cushion_mathavan(const struct table *table, vec2 normal, double nos
 	if (vy == 0)
 		return;
 
-	double s = nose_height / r - 1, c = sqrt(1 - s * s);
+	/* Beyond these heights the ball would pass under or over the nose. */
+	double s = fmin(fmax(nose_height / r - 1, -0.9), 0.9), c = sqrt(1 - s * s);
 	double scale = fabs(vx) + vy + fabs(wx) + fabs(wy) + fabs(wz);
-	struct impact im = {
-		.s = s, .c = c, .mu_nose = m->mu_cushion, .mu_cloth = m->mu_slide, .vy0 = vy, .rest_slip = 1e-10 * scale,
-		.slip0 = {{vx + wy * s - wz * c, wx - vy * s}, {vx - wy, vy + wx}},
-	};
-	double tolerance = 1e-10 * scale;
-	integrate(&im, NAN, tolerance);
-	integrate(&im, (1 - m->e_cushion * m->e_cushion) * im.y[WORK], tolerance);
+	struct impact im = {.s = s, .c = c, .mu = {m->mu_cushion, m->mu_slide}, .rest_slip = REST_SLIP * scale,
+			    .z = {vx + wy * s - wz * c, wx - vy * s, vx - wy, vy + wx, 0}};
+	double first[2] = {im.z[I1], im.z[C1]};
+	integrate(&im, NAN, scale);
+	integrate(&im, (1 - m->e_cushion * m->e_cushion) * im.z[WORK], scale);
 
-	const double *y = im.y;
-	ball->vel = vec2_madd(ball->vel, y[F1] + y[G1], along);
-	ball->vel = vec2_madd(ball->vel, -c * im.p - s * y[F2] + y[G2], into);
-	vec2 turn = vec2_madd(vec2_scale(along, y[F2] + y[G2]), s * y[F1] - y[G1], into);
-	ball->spin[0] += 2.5 / r * turn.x;
-	ball->spin[1] += 2.5 / r * turn.y;
-	ball->spin[2] -= 2.5 / r * c * y[F1];
+	/* Impulses along x from the changes of the slips along x; a ball that is wedged in stays at the cushion. */
+	double coupling = 1 - 2.5 * s, det = 3.5 * 3.5 - coupling * coupling;
+	double d1 = im.z[I1] - first[0], d2 = im.z[C1] - first[1];
+	double nose = (3.5 * d1 - coupling * d2) / det, cloth = (3.5 * d2 - coupling * d1) / det;
+	double after = velocity_into(&im, im.z), spin = im.z[C2] - after;
+	ball->vel = vec2_madd(vec2_madd(ball->vel, nose + cloth, along), fmin(after, 0) - vy, into);
+	vec2 turn = vec2_madd(vec2_scale(along, spin - wx), 2.5 * (s * nose - cloth), into);
+	ball->spin[0] += turn.x / r;
+	ball->spin[1] += turn.y / r;
+	ball->spin[2] -= 2.5 / r * c * nose;
 }

@@ -12,16 +12,16 @@
 void contact_ball_frictional(const struct table *table, struct ball *a, struct ball *b);
 
 /* Compliant impact on a cushion (Stronge 2000, ch. 5): normal and tangential springs with frequency ratio stronge_omega in
- * (1, 2), restitution e_cushion in (0, 1], Coulomb friction mu_cushion >= 0. normal: unit, from the cushion towards the ball.
- * The contact lies on the line from the ball's centre to a nose one radius away at nose_height (m above the bed, in (0, 2 r)):
- * its angle above the horizontal has the tangent nose_height / r - 1. The bed's reaction is left out, vertical velocity is
- * dropped. Precondition: the ball approaches (asserted). */
+ * (1, 2), restitution e_cushion > 1 / stronge_omega, Coulomb friction mu_cushion; outside of these ranges the spring is taken
+ * as stiff. normal: unit, from the cushion towards the ball. The contact lies on the line from the ball's centre to a nose
+ * one radius away at nose_height (m above the bed, 0 to 2 r): its angle above the horizontal has the tangent
+ * nose_height / r - 1. The bed's reaction is left out, vertical velocity dropped. Precondition: the ball approaches. */
 void contact_cushion_stronge(const struct table *table, vec2 normal, double nose_height, struct ball *ball);
 
-/* Impact on a cushion nose at nose_height, in (0, 2 r), pressing the ball on the cloth (Mathavan, Jackson, Parkin 2010):
- * normal impulse integrated with friction at nose (mu_cushion) and cloth (mu_slide), restitution e_cushion of the work
- * done at the nose. Sticking at either contact is part of the law and handled as a mode of its own. The integration
- * leaves less than 1e-7 of the ball's speed. Precondition: the ball approaches (asserted). */
+/* Impact on a cushion nose at nose_height (m, 0 to 2 r), pressing the ball on the cloth (Mathavan, Jackson, Parkin 2010):
+ * normal impulse integrated with friction at nose (mu_cushion) and cloth (mu_slide), restitution e_cushion of the work done at
+ * the nose. Sticking at either contact is part of the law and handled as a mode of its own. The integration leaves an
+ * error below 1e-5 of the speed before (surface speed of the spin included). Precondition: the ball approaches. */
 void contact_cushion_mathavan(const struct table *table, vec2 normal, double nose_height, struct ball *ball);
 
 #endif

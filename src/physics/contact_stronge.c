@@ -76,9 +76,12 @@ static double stick_end(const struct compliance *c, const struct stick *s)
 	return 0.5 * (low + high);
 }
 
-/* Slip after the impact for slip x before it, both per approach speed. */
+/* Slip after the impact for slip x before it, both per approach speed. Where the spring could not recoil in the time that
+ * the impact lasts, the limit of a stiff one: Coulomb friction until the slip ends. */
 static double slip_after(const struct compliance *c, double x)
 {
+	if (!(c->omega > 1 && c->omega < 2 && c->e * c->omega > 1))
+		return fmax(x - c->mu * BETA * (1 + c->e), 0);
 	if (x > c->mu * ((1 + c->e) * BETA - c->eta2 / c->e))
 		return x - c->mu * BETA * (1 + c->e);
 	struct stick s = stick_begin(c, x);
@@ -91,7 +94,7 @@ void contact_cushion_stronge(const struct table *table, vec2 normal, double nose
 {
 	const struct material *m = &table->material;
 	double r = table->ball_radius;
-	assert(nose_height > 0 && nose_height < 2 * r);
+	assert(nose_height >= 0 && nose_height <= 2 * r);
 	double slope = nose_height / r - 1, cosine = 1 / sqrt(1 + slope * slope), sine = slope * cosine;
 	vec2 t = vec2_perp(normal);
 	/* Components along normal (n), across it (t) and up (z); the contact point is -r (cosine n - sine z) from the centre. The
