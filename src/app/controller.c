@@ -16,7 +16,6 @@ void controller_init(struct controller *c, const struct config *config)
 		.fsm = {FSM_BLIND, 0},
 		.options = draw_options_default(),
 		.animate = true,
-		.rules = {ON_ANY, false},
 		.note = "waiting for the camera",
 	};
 	stability_init(&c->stability, config->infinity.still_distance, config->infinity.still_frames);
@@ -55,10 +54,29 @@ static void draw_shown(struct controller *c)
 	c->output.animation = true;
 }
 
+static int count_reds(const struct layout *layout)
+{
+	int reds = 0;
+	for (int i = 0; i < layout->count; i++)
+		reds += layout->ball[i].colour == COLOUR_RED;
+	return reds;
+}
+
+/* The ball on, as far as the layouts tell: a red fell since the last request: a colour; else what the position says. */
+static struct rules_state ball_on(const struct controller *c)
+{
+	struct rules_state state = rules_state_from_position(c->seen.ball, c->seen.count);
+	if (c->has_asked && count_reds(&c->seen) < count_reds(&c->asked))
+		state.on = ON_COLOUR;
+	return state;
+}
+
 static void request(struct controller *c)
 {
 	const struct config_planner *p = &c->config->planner;
 	bool rules = c->config->infinity.rules;
+	if (rules)
+		c->rules = ball_on(c);
 	c->asked = c->seen;
 	c->has_asked = true;
 	c->has_plan = false;
@@ -70,7 +88,7 @@ static void request(struct controller *c)
 		.id = id,
 		.ball_count = c->seen.count,
 		.target_kind = rules ? TARGET_RULES : TARGET_ANY,
-		.on = (int8_t)c->rules.on,
+		.on = rules ? (int8_t)c->rules.on : ON_ANY,
 		.in_hand = c->rules.in_hand,
 		.depth = p->depth,
 		.rails = p->rails,

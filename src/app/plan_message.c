@@ -83,7 +83,7 @@ int plan_request_from_message(struct plan_request *out, const billiard_plan_requ
 			request.ball[i].phase = BALL_REST;
 	}
 	request.ball_count = m->ball_count;
-	request.state = (struct rules_state){(enum rules_on)m->on, m->in_hand != 0};
+	request.state = (struct rules_state){.on = (enum rules_on)m->on, .in_hand = m->in_hand != 0};
 	request.target = (enum plan_target_kind)m->target_kind;
 	request.target_colour = (enum ball_colour)m->target_colour;
 	request.target_ball = m->target_ball;
