@@ -11,6 +11,7 @@ static const struct command {
 	int (*run)(int argc, char **argv);
 } command_table[] = {
 	{"detect", "balls in photographs", cmd_detect},
+	{"calibrate", "colour parameters from photographs", cmd_calibrate},
 	{"simulate", "what a shot does, event by event", cmd_simulate},
 };
 enum { COMMAND_COUNT = sizeof command_table / sizeof *command_table };

@@ -18,6 +18,8 @@ struct vision {
 	bool has_colours;
 	struct marker_finder *finder;
 	struct detector detector;
+	int feature_count;
+	struct colour_feature feature[VISION_BALL_MAX];
 };
 
 struct vision_def vision_def_default(void)
@@ -80,6 +82,11 @@ void vision_destroy(struct vision *vision)
 	free(vision);
 }
 
+void vision_features(const struct vision *vision, struct colour_feature *out)
+{
+	memcpy(out, vision->feature, sizeof(*out) * (size_t)vision->feature_count);
+}
+
 void vision_reset(struct vision *vision)
 {
 	(void)vision;
@@ -108,8 +115,8 @@ static bool calibrate(struct vision *v, const struct image *frame, struct vision
 static void report(struct vision *v, const struct image *frame, struct vision_result *out)
 {
 	struct detector *d = &v->detector;
-	struct colour_feature feature[DETECT_MAX];
-	struct colour_verdict verdict[DETECT_MAX];
+	struct colour_feature *feature = v->feature;
+	struct colour_verdict verdict[VISION_BALL_MAX];
 	int count = d->count < VISION_BALL_MAX ? d->count : VISION_BALL_MAX;
 	for (int i = 0; i < count; i++) {
 		float cloth[3];
@@ -125,12 +132,13 @@ static void report(struct vision *v, const struct image *frame, struct vision_re
 						    .confidence = c->confidence, .radius_px = c->fit.outline.radius_px,
 						    .rim_support = c->fit.support};
 	}
-	out->ball_count = count;
+	out->ball_count = v->feature_count = count;
 }
 
 int vision_detect(struct vision *vision, const struct image *frame, struct vision_result *out, char *err, size_t err_size)
 {
 	struct vision_result r = {0};
+	vision->feature_count = 0;
 	if (!camera_scale(&vision->def.intrinsics, frame->width, frame->height, &r.camera.in))
 		return vision_fail(-EINVAL, err, err_size, "a frame of %d x %d px does not fit a camera of %d x %d px",
 				   frame->width, frame->height, vision->def.intrinsics.width, vision->def.intrinsics.height);

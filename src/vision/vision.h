@@ -18,6 +18,8 @@ struct marker_layout {
 	struct { int id; vec2 centre; } marker[MARKER_MAX];	/* m, table frame */
 };
 
+struct colour_feature;
+
 struct vision_def {
 	const struct table *table;	/* borrowed: sizes, pockets, ball radius */
 	struct camera_intrinsics intrinsics;
@@ -66,6 +68,9 @@ int vision_detect(struct vision *vision, const struct image *frame, struct visio
 /* The next frame of a stream, time in s (any epoch, must not go back: if it does, tracking starts anew). */
 int vision_track(struct vision *vision, const struct image *frame, double time, struct vision_result *out, char *err,
 		 size_t err_size);
+
+/* What the balls of the last result looked like (vision/colour.h), in its order: out has room for VISION_BALL_MAX. For learning colours. */
+void vision_features(const struct vision *vision, struct colour_feature *out);
 
 /* Forgets tracks and pose. */
 void vision_reset(struct vision *vision);
