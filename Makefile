@@ -27,7 +27,7 @@ APP := text_file colour_file cmd_calibrate config config_reader config_table con
 	table_scene table_camera table_camera_ball \
 	bus process fsm stability plan_message planner_service controller frame_source window supervisor cmd_run cmd_status cmd_demo
 # programs: src/app/main_NAME.c becomes build/NAME
-PROGRAMS := billiard-vision billiard-planner billiard-infinity billiard-projector
+PROGRAMS := billiard billiard-vision billiard-planner billiard-infinity billiard-projector
 # tests/test_NAME.c each; tests/NAME.c shared by them
 TESTS := config position draw render contact_real contact_recorded
 TEST_SHARED := harness scenes
