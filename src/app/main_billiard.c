@@ -13,6 +13,11 @@ static const struct command {
 	{"detect", "balls in photographs", cmd_detect},
 	{"calibrate", "colour parameters from photographs", cmd_calibrate},
 	{"simulate", "what a shot does, event by event", cmd_simulate},
+	{"plan", "the best shots from a position", cmd_plan},
+	{"run", "starts all services of a configuration", cmd_run},
+	{"status", "how the running services are", cmd_status},
+	{"control", "tells the running services something", cmd_control},
+	{"demo", "the whole loop on the virtual table or on photographs", cmd_demo},
 };
 enum { COMMAND_COUNT = sizeof command_table / sizeof *command_table };
 
