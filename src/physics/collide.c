@@ -7,11 +7,13 @@
 static const double SAME_INSTANT = 4e-12; /* s */
 /* Two bodies that press on each other meet again no sooner than this. The restitution laws have no force that lasts; without
  * a bound, a pressed pair bounces ever faster (Luding and McNamara 1998 bound it likewise). */
-static const double PRESS_INTERVAL = 2e-3; /* s */
+static const double PRESS_INTERVAL = 5e-3; /* s */
 /* At most this share of the pair's root mean square speed goes into keeping them apart. */
-static const double LIFT_SHARE = 0.05;
+static const double LIFT_SHARE = 0.2;
 /* More contacts than this at one instant are an inelastic collapse, not a cascade through a rack. */
 enum { CASCADE_MAX = 400 };
+/* The thesis' topspin adds speed at each contact: in a cascade of one instant it counts for this many contacts only. */
+enum { TOPSPIN_MAX = 32 };
 
 void collide_collect(const struct sim *sim, const struct event *first, struct group *group)
 {
@@ -194,9 +196,13 @@ void collide_balls(struct sim *sim, const struct group *group)
 	}
 	struct ball *a = &sim->ball[group->contact[0].ball], *b = &sim->ball[group->contact[0].other];
 	vec2 n = vec2_unit(vec2_sub(b->pos, a->pos));
-	if (vec2_dot(vec2_sub(a->vel, b->vel), n) > 0)
+	bool alone = sim->model.ball != BALL_MODEL_THESIS || sim->instant_contacts <= TOPSPIN_MAX;
+	if (!alone)
+		collide_jointly(sim, group);
+	else if (vec2_dot(vec2_sub(a->vel, b->vel), n) > 0)
 		contact_balls(sim->table, &sim->model, a, b);
-	lift_balls(sim, a, b);
+	if (alone)
+		lift_balls(sim, a, b);
 }
 
 void collide_cushion(struct sim *sim, int ball, vec2 normal, double nose_height)

@@ -225,6 +225,14 @@ static void sunk_entry(struct path *path, const struct cushion *c, int index, co
 	}
 }
 
+/* From beyond the edge line, beside the cushion: out over the line and in again. */
+static double later_entry(const double d[3], double horizon)
+{
+	double root[2];
+	int n = roots_quadratic(d[2], d[1], d[0], root);
+	return d[2] < 0 && n == 2 && root[1] >= 0 && root[1] <= horizon ? root[1] : INFINITY;
+}
+
 static void try_cushion(struct path *path, int index)
 {
 	const struct cushion *c = &path->table->cushion[index];
@@ -241,13 +249,12 @@ static void try_cushion(struct path *path, int index)
 	if (!unbounded && d[0] < -radius)
 		return;
 	path->count->quadratic++;
-	double t = roots_quadratic_entry(d[0], d[1], d[2], path->horizon);
-	if (t == INFINITY)
-		return;
-	double excess = foot_excess(path, c, t);
-	if (excess == 0 || unbounded)
+	bool beside = d[0] < 0 && !unbounded && foot_excess(path, c, 0) > 0;
+	double t = beside ? later_entry(d, path->horizon) : roots_quadratic_entry(d[0], d[1], d[2], path->horizon);
+	double excess = t < INFINITY ? foot_excess(path, c, t) : 0;
+	if (t < INFINITY && (excess == 0 || unbounded))
 		offer(path, t, EVENT_CUSHION, index, excess);
-	else
+	else if (t < INFINITY || beside)
 		sunk_entry(path, c, index, d);
 }
 
@@ -273,11 +280,11 @@ static void try_region(struct path *path, const struct table_region *region)
 		try_pocket(path, __builtin_ctz(mask));
 	for (uint32_t mask = region->cushions; mask; mask &= mask - 1)
 		try_cushion(path, __builtin_ctz(mask));
-	if (path->model->pocket != POCKET_MODEL_JAWS)
-		return;
 	for (uint32_t mask = region->jaws; mask; mask &= mask - 1) {
 		int i = __builtin_ctz(mask);
 		const struct jaw *jaw = &path->table->jaw[i];
+		if (jaw->radius == 0 && path->model->pocket != POCKET_MODEL_JAWS)
+			continue;
 		double t = try_disc(path, jaw->centre, jaw->radius + path->table->ball_radius);
 		if (t < INFINITY)
 			offer(path, t, EVENT_JAW, i, 0);

@@ -21,8 +21,8 @@ enum cushion_model {
 
 enum pocket_model {
 	POCKET_MODEL_NONE,	/* no pockets, jaws or jaw cushions: the main rails only */
-	POCKET_MODEL_CIRCLE,	/* centre enters the circle; jaw tips are not there (thesis 4.6.4.8) */
-	POCKET_MODEL_JAWS	/* jaw segments and tips, then the circle */
+	POCKET_MODEL_CIRCLE,	/* centre enters the circle; sharp jaw tips are not there (thesis 4.6.4.8), rounded ones are */
+	POCKET_MODEL_JAWS	/* jaw segments and all tips, then the circle */
 };
 
 struct model {

@@ -2,8 +2,8 @@
 
 #include <assert.h>
 
-/* Below this speed a ball is at rest: at the least rolling friction it would go on for less than 1e-16 m. */
-static const double REST_SPEED = 1e-10; /* m/s */
+/* Below this speed a ball is at rest: it would go on for less than 1e-15 m. */
+static const double REST_SPEED = 1e-8; /* m/s */
 /* Slip below this share of the ball's own speed is rounding. */
 static const double SLIP_ROUNDING = 1e-13;
 

@@ -261,6 +261,8 @@ double sim_energy(const struct sim *sim)
 	for (int i = 0; i < sim->ball_count; i++) {
 		struct ball b = sim_ball(sim, i);
 		double w2 = b.spin[0] * b.spin[0] + b.spin[1] * b.spin[1] + b.spin[2] * b.spin[2];
+		if (sim->model.thesis_motion)
+			w2 = 0;
 		if (b.phase != BALL_POTTED)
 			sum += 0.5 * sim->table->ball_mass * (vec2_norm2(b.vel) + 0.4 * r * r * w2);
 	}

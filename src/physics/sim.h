@@ -14,7 +14,7 @@
 struct shot {
 	double angle;		/* rad, direction of the cue, counter-clockwise from +x */
 	double speed;		/* m/s of the ball after the strike, 0 < speed <= 20 */
-	double side;		/* contact point, share of the radius, + = left of the line of aim seen from behind (-> spin z < 0 or > 0: see sim.c) */
+	double side;		/* contact point, share of the radius, + = left of the line of aim: spin z < 0 */
 	double follow;		/* contact point, share of the radius, + = above the middle */
 	double elevation;	/* rad, cue raised by, 0 <= elevation < pi/2 */
 };
@@ -47,7 +47,8 @@ struct ball sim_ball(const struct sim *sim, int ball);
 /* Field by field, no padding: equal input gives the equal hash on every platform and optimisation level. */
 uint64_t sim_hash(const struct sim *sim, uint64_t seed);
 
-/* Mechanical energy in J of all balls on the table (translation and rotation). */
+/* Mechanical energy in J of all balls on the table: translation and rotation; in thesis motion translation only, as its
+ * energy balance has it (8.14 to 8.19: spin there only says how long a ball still slides). */
 double sim_energy(const struct sim *sim);
 
 #endif
