@@ -88,8 +88,10 @@ $(BUILD)/libsearch.a: $(SEARCH_O)
 $(BUILD)/libvision.a: $(VISION_O)
 $(BUILD)/libapp.a: $(APP_O)
 $(BUILD)/liblcmtypes.a: $(LCM_O)
+# A changed list of sources changes the archives.
+$(ARCHIVES): Makefile
 $(BUILD)/lib%.a:
-	@rm -f $@ && $(AR) rcsD $@ $^
+	@rm -f $@ && $(AR) rcsD $@ $(filter %.o,$^)
 
 $(BUILD)/src/%.o: src/%.c
 	@mkdir -p $(@D)
