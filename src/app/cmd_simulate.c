@@ -215,8 +215,6 @@ static int print_events(struct run *run, bool json)
 		printf("%9s  %-23s %-16s %9s %9s %9s %8s  %s\n", "t/s", "event", "ball", "x/mm", "y/mm", "v/(mm/s)", "angle/°", "phase");
 	begin(run);
 	int status = CMD_OK;
-	if (run->cue >= 0)
-		status = print_event(run, &(struct event){0, EVENT_STRIKE, (int16_t)run->cue, -1}, json);
 	struct event event;
 	for (int n = 0; status == CMD_OK && sim_step(&run->sim, &event); n++) {
 		if (n == EVENT_LIMIT) {
@@ -254,10 +252,10 @@ int cmd_simulate(int argc, char **argv)
 	if (!run)
 		return cmd_bad_input("%s: out of memory", argv[0]);
 	status = prepare(run, &options);
-	if (status == CMD_OK)
-		status = print_events(run, options.json);
 	if (status == CMD_OK && options.plot)
 		status = plot(run, options.plot);
+	if (status == CMD_OK)
+		status = print_events(run, options.json);
 	free(run);
 	return status;
 }
