@@ -24,12 +24,12 @@ VISION := camera colour detect fit linear outline pose reason scan seeds vision
 VISION_CV := capture_cv image_io_cv markers_cv marker_image_cv
 # app: what the programs share
 APP := text_file shot_file colour_file cmd_calibrate config config_reader config_table config_vision position cmd cmd_simulate cmd_detect cmd_plan plot overlay draw draw_field draw_path draw_proposal render \
-	table_scene table_camera table_camera_ball \
+	table_scene table_camera table_camera_ball player \
 	bus process fsm stability plan_message planner_service controller frame_source window supervisor cmd_run cmd_status cmd_demo
 # programs: src/app/main_NAME.c becomes build/NAME
-PROGRAMS := billiard billiard billiard-vision billiard-planner billiard-infinity billiard-projector
+PROGRAMS := billiard billiard-vision billiard-planner billiard-infinity billiard-projector billiard-table
 # tests/test_NAME.c each; tests/NAME.c shared by them
-TESTS := config position cmd plot draw render contact_real contact_recorded
+TESTS := config position cmd plot draw render player contact_real contact_recorded
 TEST_SHARED := harness scenes
 # tests that are scripts: tests/NAME.sh, called with the build folder
 TEST_SCRIPTS :=
