@@ -79,7 +79,6 @@ static void lift_balls(const struct sim *sim, struct ball *a, struct ball *b)
 	double lift = lift_speed(sim, press, sqrt(before));
 	if (leave >= lift)
 		return;
-	double slip_a = vec2_norm(motion_slip(a, r)), slip_b = vec2_norm(motion_slip(b, r));
 	a->vel = vec2_madd(a->vel, -0.5 * (lift - leave), n);
 	b->vel = vec2_madd(b->vel, 0.5 * (lift - leave), n);
 	double k = sqrt(before / (energy(a, r) + energy(b, r)));
@@ -87,8 +86,8 @@ static void lift_balls(const struct sim *sim, struct ball *a, struct ball *b)
 		scale_motion(a, k);
 		scale_motion(b, k);
 	}
-	contact_set_phase(sim->table, &sim->model, a->phase, slip_a, a);
-	contact_set_phase(sim->table, &sim->model, b->phase, slip_b, b);
+	contact_set_phase(sim->table, &sim->model, a->phase, a);
+	contact_set_phase(sim->table, &sim->model, b->phase, b);
 }
 
 static void lift_at_cushion(const struct sim *sim, vec2 normal, struct ball *ball)
@@ -163,12 +162,10 @@ static void collide_jointly(struct sim *sim, const struct group *group)
 	const struct table *table = sim->table;
 	struct joint joint[GROUP_MAX];
 	enum ball_phase phase[BALL_MAX];
-	double slip[BALL_MAX], speed = 0;
+	double speed = 0;
 	double restitution = contact_restitution(table, &sim->model), left = contact_speed_left(table, &sim->model);
-	for (int i = 0; i < sim->ball_count; i++) {
+	for (int i = 0; i < sim->ball_count; i++)
 		phase[i] = sim->ball[i].phase;
-		slip[i] = vec2_norm(motion_slip(&sim->ball[i], table->ball_radius));
-	}
 	for (int i = 0; i < group->count; i++) {
 		struct ball *a = &sim->ball[group->contact[i].ball], *b = &sim->ball[group->contact[i].other];
 		vec2 n = vec2_unit(vec2_sub(b->pos, a->pos));
@@ -182,7 +179,7 @@ static void collide_jointly(struct sim *sim, const struct group *group)
 			continue;
 		if (left != 1)
 			scale_motion(&sim->ball[i], left);
-		contact_set_phase(table, &sim->model, phase[i], slip[i], &sim->ball[i]);
+		contact_set_phase(table, &sim->model, phase[i], &sim->ball[i]);
 	}
 	for (int i = 0; i < group->count; i++)
 		lift_balls(sim, joint[i].a, joint[i].b);

@@ -14,26 +14,21 @@ double contact_speed_left(const struct table *table, const struct model *model)
 	return model->ball == BALL_MODEL_THESIS ? 1 - table->material.loss_ball : 1;
 }
 
-/* Thesis motion knows no spin but that which keeps a ball sliding for the time left to it. */
-static void slide_on(const struct table *table, double slip, struct ball *ball)
+/* Thesis motion knows no spin: whatever does not roll slides as if just struck. */
+static void slide(const struct table *table, struct ball *ball)
 {
-	double speed = vec2_norm(ball->vel);
-	double k = speed > 0 ? (slip / speed - 1) / table->ball_radius : 0;
-	ball->spin[0] = k * ball->vel.y;
-	ball->spin[1] = -k * ball->vel.x;
-	ball->spin[2] = 0;
+	ball->spin[0] = ball->spin[1] = ball->spin[2] = 0;
 	motion_classify(ball, table);
 }
 
-void contact_set_phase(const struct table *table, const struct model *model, enum ball_phase phase, double slip,
-		       struct ball *ball)
+void contact_set_phase(const struct table *table, const struct model *model, enum ball_phase phase, struct ball *ball)
 {
 	if (!model->thesis_motion)
 		motion_classify(ball, table);
 	else if (phase == BALL_ROLLING)
 		motion_roll(ball, table);
 	else
-		slide_on(table, phase == BALL_SLIDING ? slip : vec2_norm(ball->vel), ball);
+		slide(table, ball);
 }
 
 /* Equal masses, no friction: the normal components are exchanged, the approach times e. */
@@ -70,8 +65,6 @@ static void thesis_balls(const struct table *table, struct ball *a, struct ball 
 void contact_balls(const struct table *table, const struct model *model, struct ball *a, struct ball *b)
 {
 	enum ball_phase phase_a = a->phase, phase_b = b->phase;
-	double slip_a = vec2_norm(motion_slip(a, table->ball_radius));
-	double slip_b = vec2_norm(motion_slip(b, table->ball_radius));
 	switch (model->ball) {
 	case BALL_MODEL_ELASTIC:
 	case BALL_MODEL_RESTITUTION:
@@ -84,8 +77,8 @@ void contact_balls(const struct table *table, const struct model *model, struct 
 		contact_ball_frictional(table, a, b);
 		break;
 	}
-	contact_set_phase(table, model, phase_a, slip_a, a);
-	contact_set_phase(table, model, phase_b, slip_b, b);
+	contact_set_phase(table, model, phase_a, a);
+	contact_set_phase(table, model, phase_b, b);
 }
 
 static void mirror(double restitution, vec2 normal, struct ball *ball)

@@ -17,10 +17,9 @@ void contact_cushion(const struct table *table, const struct model *model, vec2 
 double contact_restitution(const struct table *table, const struct model *model);
 double contact_speed_left(const struct table *table, const struct model *model);
 
-/* Phase after a contact. slip is the slip speed before it (m/s), phase the phase before it; both matter only in thesis
- * motion: a sliding ball goes on sliding for the time it had left, a rolling one rolls on, a resting one slides
- * without spin (4.6.4.9). */
-void contact_set_phase(const struct table *table, const struct model *model, enum ball_phase phase, double slip,
-		       struct ball *ball);
+/* Phase after a contact; phase is that before it and matters only in thesis motion: a rolling ball rolls on, any other slides
+ * without spin, for the time that its new speed gives. (The text of 4.6.4.9 keeps the time from the strike; the thesis'
+ * program does not: only so do its cue balls come to rest where its second shots begin.) */
+void contact_set_phase(const struct table *table, const struct model *model, enum ball_phase phase, struct ball *ball);
 
 #endif
