@@ -10,14 +10,18 @@
 #include <sys/socket.h>
 #include <unistd.h>
 
+enum { DRAIN_MAX = 1000 };	/* messages handled at a time */
+
 struct subscription {
 	struct bus *bus;
 	const struct bus_type *type;
 	enum bus_delivery delivery;
 	bus_handler *handler;
 	void *context;
-	void *message;		/* owned, type->size bytes */
+	void *message, *spare;	/* owned, type->size bytes each; spare: decoded into, so that a bad message spoils no good one */
 	bool pending;		/* BUS_LATEST: message waits for the end of the drain */
+	size_t bytes;		/* of message, encoded */
+	char channel[64];
 };
 
 struct bus {
@@ -102,8 +106,9 @@ static int check_route(const char *url, char *err, size_t err_size)
 	}
 	int fd = socket(AF_INET, SOCK_DGRAM | SOCK_CLOEXEC, 0);
 	if (fd < 0) {
-		snprintf(err, err_size, "bus: no socket: %s", strerror(errno));
-		return -errno;
+		int r = -errno;
+		snprintf(err, err_size, "bus: no socket: %s", strerror(-r));
+		return r;
 	}
 	int r = connect(fd, (struct sockaddr *)&to, sizeof to) < 0 ? -errno : 0;
 	close(fd);
@@ -146,6 +151,7 @@ void bus_close(struct bus *bus)
 		if (s->pending)
 			s->type->cleanup(s->message);
 		free(s->message);
+		free(s->spare);
 	}
 	pthread_mutex_destroy(&bus->lock);
 	free(bus->buffer);
@@ -160,6 +166,14 @@ static void ignore(struct bus *bus, const char *channel, const char *why, size_t
 	snprintf(bus->last_ignored, sizeof bus->last_ignored, "%.40s: %s, %zu bytes", channel, why, size);
 }
 
+static void deliver(struct subscription *s)
+{
+	s->pending = false;
+	if (!s->handler(s->context, s->message))
+		ignore(s->bus, s->channel, "out of range or outdated", s->bytes);
+	s->type->cleanup(s->message);
+}
+
 static void on_message(const lcm_recv_buf_t *rbuf, const char *channel, void *user)
 {
 	struct subscription *s = user;
@@ -168,25 +182,23 @@ static void on_message(const lcm_recv_buf_t *rbuf, const char *channel, void *us
 		ignore(bus, channel, "malformed", rbuf->data_size);
 		return;
 	}
-	if (s->pending) {
-		s->type->cleanup(s->message);
-		s->pending = false;
-	}
-	int used = s->type->decode(rbuf->data, 0, (int)rbuf->data_size, s->message);
+	int used = s->type->decode(rbuf->data, 0, (int)rbuf->data_size, s->spare);
 	if (used < 0 || (uint32_t)used != rbuf->data_size) {
 		if (used >= 0)
-			s->type->cleanup(s->message);
+			s->type->cleanup(s->spare);
 		ignore(bus, channel, used < 0 ? "foreign or malformed" : "too long", rbuf->data_size);
 		return;
 	}
 	bus->received++;
-	if (s->delivery == BUS_LATEST) {
-		s->pending = true;
-		return;
-	}
-	if (!s->handler(s->context, s->message))
-		ignore(bus, channel, "out of range or outdated", rbuf->data_size);
-	s->type->cleanup(s->message);
+	if (s->pending)
+		s->type->cleanup(s->message);
+	void *message = s->spare;
+	s->spare = s->message;
+	s->message = message;
+	s->pending = true;
+	s->bytes = rbuf->data_size;
+	if (s->delivery == BUS_EACH)
+		deliver(s);
 }
 
 int bus_subscribe(struct bus *bus, const char *channel, const struct bus_type *type, enum bus_delivery delivery, bus_handler *handler,
@@ -195,10 +207,12 @@ int bus_subscribe(struct bus *bus, const char *channel, const struct bus_type *t
 	if (bus->subscription_count == BUS_SUBSCRIPTION_MAX)
 		return -ENOSPC;
 	struct subscription *s = &bus->subscription[bus->subscription_count];
-	*s = (struct subscription){bus, type, delivery, handler, context, calloc(1, type->size), false};
-	lcm_subscription_t *l = s->message ? lcm_subscribe(bus->lcm, channel, on_message, s) : NULL;
+	*s = (struct subscription){bus, type, delivery, handler, context, calloc(1, type->size), calloc(1, type->size), false, 0, ""};
+	snprintf(s->channel, sizeof s->channel, "%s", channel);
+	lcm_subscription_t *l = s->message && s->spare ? lcm_subscribe(bus->lcm, channel, on_message, s) : NULL;
 	if (!l) {
 		free(s->message);
+		free(s->spare);
 		return -ENOMEM;
 	}
 	/* A full queue drops the newest message: never let it fill. */
@@ -209,22 +223,17 @@ int bus_subscribe(struct bus *bus, const char *channel, const struct bus_type *t
 
 static void deliver_latest(struct bus *bus)
 {
-	for (int i = 0; i < bus->subscription_count; i++) {
-		struct subscription *s = &bus->subscription[i];
-		if (!s->pending)
-			continue;
-		if (!s->handler(s->context, s->message))
-			ignore(bus, s->type->name, "out of range or outdated", 0);
-		s->type->cleanup(s->message);
-		s->pending = false;
-	}
+	for (int i = 0; i < bus->subscription_count; i++)
+		if (bus->subscription[i].pending)
+			deliver(&bus->subscription[i]);
 }
 
 int bus_drain(struct bus *bus)
 {
-	int r;
-	while ((r = lcm_handle_timeout(bus->lcm, 0)) > 0)
-		;
+	int r = 1;
+	/* Not without end: a flood must not keep the loop from its timers and signals. The descriptor stays readable. */
+	for (int i = 0; i < DRAIN_MAX && r > 0; i++)
+		r = lcm_handle_timeout(bus->lcm, 0);
 	deliver_latest(bus);
 	return r < 0 ? -EIO : 0;
 }

@@ -49,7 +49,7 @@ void bus_close(struct bus *bus);	/* NULL is fine */
 /* Address to use: LCM_DEFAULT_URL when it is set, else configured. */
 const char *bus_url(const char *configured);
 
-/* 0, -ENOSPC, -ENOMEM. */
+/* channel: a name, or a regular expression of LCM. 0, -ENOSPC, or -ENOMEM (also: no valid expression). */
 int bus_subscribe(struct bus *bus, const char *channel, const struct bus_type *type, enum bus_delivery delivery, bus_handler *handler,
 		  void *context);
 /* 0 or -EIO. A lost message is not an error. */
@@ -57,7 +57,7 @@ int bus_publish(struct bus *bus, const char *channel, const struct bus_type *typ
 
 /* For the event loop: readable when messages wait. */
 int bus_descriptor(struct bus *bus);
-/* Handles all that waits. 0, or -EIO when the bus is gone (the end of a replayed log). */
+/* Handles what waits, at most 1000 messages. 0, or -EIO when the bus is gone (the end of a replayed log). */
 int bus_drain(struct bus *bus);
 
 /* Messages taken and messages ignored so far. */
