@@ -71,7 +71,7 @@ static int setup(struct planner_process *p, const struct process_options *option
 	}
 	p->process.describe = describe;
 	p->process.context = p;
-	if ((r = bus_subscribe(p->process.bus, "PLAN_REQUEST", &bus_plan_request, BUS_LATEST, on_request, p)) < 0 ||
+	if ((r = bus_subscribe(p->process.bus, "PLAN_REQUEST", &bus_plan_request, BUS_EACH, on_request, p)) < 0 ||
 	    (r = bus_subscribe(p->process.bus, "COMMAND", &bus_command, BUS_EACH, on_command, p)) < 0 ||
 	    (r = sd_event_add_io(p->process.event, NULL, planner_service_descriptor(p->service), EPOLLIN, on_answers, p)) < 0)
 		fprintf(stderr, "billiard-planner: %s\n", strerror(-r));

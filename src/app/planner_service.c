@@ -2,6 +2,7 @@
 
 #include <errno.h>
 #include <pthread.h>
+#include <stdatomic.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
@@ -13,6 +14,8 @@
 #include "app/process.h"
 
 static const double IMPROVEMENT_PERIOD = 0.1;	/* s between improved answers at least */
+static const double OUTDATED = 2;		/* s after the last answer within which an older request is a late one */
+static const char REPLACED[] = "replaced by a newer request or cancelled";
 
 /* Answers on their way to the loop. A request makes at most one final answer; improvements replace each other. */
 enum { ANSWER_MAX = 4 };
@@ -25,6 +28,7 @@ struct planner_service {
 	int descriptor;			/* eventfd: answers wait */
 	struct trace_entry *scratch;	/* owned, the search thread's */
 	billiard_plan_t draft;		/* the search thread's */
+	atomic_bool unwanted;		/* the running search is to end; reset when the next is taken */
 
 	pthread_mutex_t lock;		/* of all below */
 	pthread_cond_t wake;
@@ -35,8 +39,8 @@ struct planner_service {
 	double request_time;		/* s, monotonic */
 	billiard_plan_t answer[ANSWER_MAX];
 	int answer_count;
-	bool has_last;
-	billiard_plan_t last;		/* the last answer given, for repeated requests */
+	billiard_plan_t last;		/* the last answer to present_id, for repeated requests; request_id 0: none yet */
+	double last_time;		/* s, monotonic, when it was given */
 	struct planner_service_figures figures;
 };
 
@@ -48,9 +52,23 @@ struct search {
 	double request_time, started, last_sent;
 };
 
+/* The search's clock. It is asked often, so this is where a search that nobody wants any more is ended: planner_cancel() alone would be
+ * lost when it comes just before the search begins. */
+static double search_clock(void *context)
+{
+	struct planner_service *service = context;
+	if (atomic_load_explicit(&service->unwanted, memory_order_relaxed))
+		planner_cancel(service->planner);
+	return process_seconds(NULL);
+}
+
 /* Hands a plan to the loop. An improvement still waiting is replaced; a final answer never is. Locked by the caller. */
 static void post(struct planner_service *service, const billiard_plan_t *plan)
 {
+	if (plan->request_id == service->present_id) {
+		service->last = *plan;
+		service->last_time = process_seconds(NULL);
+	}
 	int at = service->answer_count;
 	if (at > 0 && !service->answer[at - 1].final && service->answer[at - 1].request_id == plan->request_id)
 		at--;
@@ -84,8 +102,6 @@ static void send_plan(struct search *search, bool final)
 		service->figures.sims += plan->sims;
 		service->figures.cancelled += plan->status == PLAN_MESSAGE_CANCELLED;
 	}
-	service->last = *plan;
-	service->has_last = true;
 	post(service, plan);
 	pthread_mutex_unlock(&service->lock);
 	search->last_sent = now;
@@ -95,11 +111,6 @@ static void on_progress(void *context, const struct plan_result *result)
 {
 	struct search *search = context;
 	struct planner_service *service = search->service;
-	/* A cancel that came between taking the request and the search's begin would else be lost. */
-	pthread_mutex_lock(&service->lock);
-	if (service->present_id != search->id)
-		planner_cancel(service->planner);
-	pthread_mutex_unlock(&service->lock);
 	if (search->sequence > 0 && process_seconds(NULL) - search->last_sent < IMPROVEMENT_PERIOD)
 		return;
 	plan_message_fill(&service->draft, result, &service->config->table, &service->config->model, service->scratch);
@@ -126,7 +137,7 @@ static void run_search(struct planner_service *service, const billiard_plan_requ
 		plan_message_fill(&service->draft, &result, &service->config->table, &service->config->model, service->scratch);
 		if (r == -ECANCELED) {
 			service->draft.status = PLAN_MESSAGE_CANCELLED;
-			snprintf(err, sizeof err, "replaced by a newer request or cancelled");
+			snprintf(err, sizeof err, "%s", REPLACED);
 		} else if (service->draft.status == PLAN_MESSAGE_NONE) {
 			snprintf(err, sizeof err, "no shot found");
 		}
@@ -149,6 +160,7 @@ static void *search_thread(void *context)
 		double request_time = service->request_time;
 		service->has_request = false;
 		service->busy = true;
+		atomic_store_explicit(&service->unwanted, false, memory_order_relaxed);
 		pthread_mutex_unlock(&service->lock);
 		run_search(service, &request, request_time);
 		pthread_mutex_lock(&service->lock);
@@ -181,12 +193,13 @@ int planner_service_create(struct planner_service **out, const struct config *co
 		def.workers = PLAN_WORKERS_MAX;
 	if (config->planner.memory)
 		def.memory = config->planner.memory;
-	def.now = process_seconds;
+	def.now = search_clock;
+	def.now_context = service;
 	int r = service->descriptor < 0 ? -errno : !service->scratch ? -ENOMEM : planner_create(&service->planner, &def);
 	if (r == 0)
 		r = -pthread_create(&service->thread, NULL, search_thread, service);
 	if (r < 0) {
-		snprintf(err, err_size, "planner: %s", strerror(-r));
+		snprintf(err, err_size, "planner: %s", r == -EINVAL ? "memory_mib is too small for so many workers" : strerror(-r));
 		planner_service_destroy(service);
 		return r;
 	}
@@ -203,7 +216,7 @@ void planner_service_destroy(struct planner_service *service)
 		pthread_mutex_lock(&service->lock);
 		service->stop = true;
 		service->has_request = false;
-		planner_cancel(service->planner);
+		atomic_store_explicit(&service->unwanted, true, memory_order_relaxed);
 		pthread_cond_signal(&service->wake);
 		pthread_mutex_unlock(&service->lock);
 		pthread_join(service->thread, NULL);
@@ -225,43 +238,55 @@ int planner_service_descriptor(const struct planner_service *service)
 /* A request that never began still ends with a final answer. Locked by the caller. */
 static void answer_unstarted(struct planner_service *service)
 {
-	static const char WHY[] = "replaced by a newer request or cancelled";
-	/* answer[] is large: build it in place of the next slot through post(). */
-	billiard_plan_t *plan = malloc(sizeof *plan);
-	if (!plan)
-		return;
-	plan_message_begin(plan, &service->request);
-	plan->utime = process_utime();
-	plan->final = 1;
-	plan->status = PLAN_MESSAGE_CANCELLED;
-	bus_set_text(plan->reason, sizeof plan->reason, WHY);
-	post(service, plan);
-	free(plan);
+	billiard_plan_t plan;
+	plan_message_begin(&plan, &service->request);
+	plan.utime = process_utime();
+	plan.final = 1;
+	plan.status = PLAN_MESSAGE_CANCELLED;
+	bus_set_text(plan.reason, sizeof plan.reason, REPLACED);
+	post(service, &plan);
 	service->figures.cancelled++;
 	service->has_request = false;
+}
+
+/* Ends what waits or runs. Locked by the caller. */
+static void drop_present(struct planner_service *service)
+{
+	if (service->has_request)
+		answer_unstarted(service);
+	else if (service->busy)
+		atomic_store_explicit(&service->unwanted, true, memory_order_relaxed);
+}
+
+static void take(struct planner_service *service, const billiard_plan_request_t *request)
+{
+	drop_present(service);
+	service->figures.requests++;
+	service->present_id = request->id;
+	service->last.request_id = 0;
+	service->request = *request;
+	service->request_time = process_seconds(NULL);
+	service->has_request = true;
+	pthread_cond_signal(&service->wake);
 }
 
 bool planner_service_request(struct planner_service *service, const billiard_plan_request_t *request)
 {
 	bool accepted = true;
 	pthread_mutex_lock(&service->lock);
-	if (request->id < service->present_id) {
-		accepted = false;
+	bool idle = !service->busy && !service->has_request;
+	bool recent = process_seconds(NULL) - service->last_time < OUTDATED;
+	if (request->id > service->present_id) {
+		take(service, request);
 	} else if (request->id == service->present_id) {
 		/* Asked again: it runs, or its last answer was lost. */
-		if (!service->busy && !service->has_request && service->has_last && service->last.request_id == request->id)
+		if (service->last.request_id == request->id && service->last.final)
 			post(service, &service->last);
+	} else if (idle && !recent) {
+		/* Not late: the asker's clock was set back, or a recording is replayed. */
+		take(service, request);
 	} else {
-		if (service->has_request)
-			answer_unstarted(service);
-		if (service->busy)
-			planner_cancel(service->planner);
-		service->figures.requests++;
-		service->present_id = request->id;
-		service->request = *request;
-		service->request_time = process_seconds(NULL);
-		service->has_request = true;
-		pthread_cond_signal(&service->wake);
+		accepted = false;
 	}
 	pthread_mutex_unlock(&service->lock);
 	return accepted;
@@ -270,12 +295,8 @@ bool planner_service_request(struct planner_service *service, const billiard_pla
 void planner_service_cancel(struct planner_service *service, int64_t id)
 {
 	pthread_mutex_lock(&service->lock);
-	if (id == service->present_id) {
-		if (service->has_request)
-			answer_unstarted(service);
-		else if (service->busy)
-			planner_cancel(service->planner);
-	}
+	if (id == service->present_id)
+		drop_present(service);
 	pthread_mutex_unlock(&service->lock);
 }
 

@@ -23,7 +23,7 @@ void planner_service_destroy(struct planner_service *service);	/* NULL is fine; 
 int planner_service_descriptor(const struct planner_service *service);
 
 /* A request: replaces the one that runs (which ends with a final answer marked cancelled); the same id again is answered with the last
- * answer, or goes on. False when it is older than the present one (outdated). */
+ * answer, or goes on. False when it is older than the present one (outdated), unless that has been answered for two seconds. */
 bool planner_service_request(struct planner_service *service, const billiard_plan_request_t *request);
 /* Ends the search for that id, if it runs. */
 void planner_service_cancel(struct planner_service *service, int64_t id);
