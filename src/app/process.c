@@ -32,10 +32,30 @@ double process_seconds(void *unused)
 
 /* ---- command line --------------------------------------------------------------------------------------------------- */
 
-static void print_usage(const char *name, bool is_vision)
+/* The options of one program: those it alone has, then those that all have. */
+struct option_set {
+	const char *program, *usage;
+	struct option options[8];
+};
+enum { OPT_BUS = 256, OPT_SOURCE, OPT_HOLD, OPT_POSITION };
+#define COMMON_OPTIONS                                                                                                             \
+	{"config", required_argument, NULL, 'c'}, {"bus", required_argument, NULL, OPT_BUS}, {"help", no_argument, NULL, 'h'},     \
+	{"version", no_argument, NULL, 'v'}, {NULL, 0, NULL, 0}
+
+static const struct option_set option_sets[] = {
+	{"billiard-vision",
+	 " [--source v4l2:/dev/videoN|dir:FOLDER|file:VIDEO|lcm:CHANNEL] [--hold SECONDS]",
+	 {{"source", required_argument, NULL, OPT_SOURCE}, {"hold", required_argument, NULL, OPT_HOLD}, COMMON_OPTIONS}},
+	{"billiard-table", " [--position FILE]", {{"position", required_argument, NULL, OPT_POSITION}, COMMON_OPTIONS}},
+	{"", "", {COMMON_OPTIONS}},
+};
+
+static const struct option_set *options_of(const char *program)
 {
-	printf("usage: %s [-c CONF] [--bus URL]%s\n", name,
-	       is_vision ? " [--source v4l2:/dev/videoN|dir:FOLDER|file:VIDEO|lcm:CHANNEL] [--hold SECONDS]" : "");
+	const struct option_set *set = option_sets;
+	while (set->program[0] && strcmp(set->program, program) != 0)
+		set++;
+	return set;
 }
 
 static int parse_hold(const char *text, double *out)
@@ -52,34 +72,36 @@ static int parse_hold(const char *text, double *out)
 
 int process_parse(struct process_options *out, const char *name, int argc, char **argv)
 {
-	enum { OPT_BUS = 256, OPT_SOURCE, OPT_HOLD };
-	static const struct option all[] = {
-		{"source", required_argument, NULL, OPT_SOURCE}, {"hold", required_argument, NULL, OPT_HOLD},
-		{"config", required_argument, NULL, 'c'},	 {"bus", required_argument, NULL, OPT_BUS},
-		{"help", no_argument, NULL, 'h'},		 {"version", no_argument, NULL, 'v'},
-		{NULL, 0, NULL, 0},
-	};
-	enum { VISION_ONLY = 2 };
+	const struct option_set *set = options_of(name);
 	*out = (struct process_options){.config = config_default_path(), .hold = 2};
-	bool is_vision = strcmp(name, "billiard-vision") == 0;
 	int c;
-	while ((c = getopt_long(argc, argv, "c:h", is_vision ? all : all + VISION_ONLY, NULL)) != -1) {
-		if (c == 'c')
+	while ((c = getopt_long(argc, argv, "c:h", set->options, NULL)) != -1) {
+		switch (c) {
+		case 'c':
 			out->config = optarg;
-		else if (c == OPT_BUS)
+			break;
+		case OPT_BUS:
 			out->bus = optarg;
-		else if (c == OPT_SOURCE)
+			break;
+		case OPT_SOURCE:
 			out->source = optarg;
-		else if (c == OPT_HOLD && parse_hold(optarg, &out->hold) < 0)
-			return -EINVAL;
-		else if (c == '?')
-			return -EINVAL;
-		if (c == 'h')
-			print_usage(name, is_vision);
-		if (c == 'v')
-			printf("%s %s\n", name, BILLIARD_VERSION);
-		if (c == 'h' || c == 'v')
+			break;
+		case OPT_POSITION:
+			out->position = optarg;
+			break;
+		case OPT_HOLD:
+			if (parse_hold(optarg, &out->hold) < 0)
+				return -EINVAL;
+			break;
+		case 'h':
+			printf("usage: %s [-c CONF] [--bus URL]%s\n", name, set->usage);
 			return 1;
+		case 'v':
+			printf("%s %s\n", name, BILLIARD_VERSION);
+			return 1;
+		default:
+			return -EINVAL;
+		}
 	}
 	if (optind < argc) {
 		fprintf(stderr, "%s: unexpected argument \"%s\"\n", name, argv[optind]);

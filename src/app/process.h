@@ -15,6 +15,7 @@ struct process_options {
 	const char *bus;	/* --bus URL, NULL: LCM_DEFAULT_URL or the configuration's */
 	const char *source;	/* --source, billiard-vision only; NULL: the configuration's */
 	double hold;		/* --hold, billiard-vision only: s each photograph of a folder is shown */
+	const char *position;	/* --position, billiard-table only; NULL: the opening position of snooker */
 };
 
 struct process {

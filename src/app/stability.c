@@ -8,6 +8,8 @@ enum {
 	SETTLE_ROUNDS = 200
 };
 
+static const double NEAREST_MAX = 0.025;	/* m, less than half the distance of touching balls */
+
 void stability_init(struct stability *s, double still_distance, int still_frames)
 {
 	*s = (struct stability){.still_distance = still_distance, .still_frames = still_frames, .anchor.cue = -1};
@@ -30,12 +32,21 @@ static int find_cue(const struct stability *s, const struct layout *layout)
 	return cue;
 }
 
-static int find_track(const struct layout *layout, int track)
+/* The same ball in another layout: by its identity; without one (single frames) the nearest of its colour. */
+static int find_same(const struct layout *layout, const struct ball *ball, int track)
 {
-	for (int i = 0; i < layout->count; i++)
-		if (layout->track[i] == track)
+	int nearest = -1;
+	double best = NEAREST_MAX;
+	for (int i = 0; i < layout->count; i++) {
+		double d = vec2_dist(layout->ball[i].pos, ball->pos);
+		if (track > 0 && layout->track[i] == track)
 			return i;
-	return -1;
+		if (track <= 0 && layout->ball[i].colour == ball->colour && d < best) {
+			best = d;
+			nearest = i;
+		}
+	}
+	return nearest;
 }
 
 /* Largest way of a ball between two layouts; *same: no ball came or went. */
@@ -44,7 +55,7 @@ static double largest_move(const struct layout *from, const struct layout *to, b
 	double move = 0;
 	*same = from->count == to->count;
 	for (int i = 0; i < to->count; i++) {
-		int j = find_track(from, to->track[i]);
+		int j = find_same(from, &to->ball[i], to->track[i]);
 		if (j < 0)
 			*same = false;
 		else
