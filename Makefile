@@ -29,8 +29,9 @@ APP := text_file shot_file colour_file cmd_calibrate config config_reader config
 # programs: src/app/main_NAME.c becomes build/NAME
 PROGRAMS := billiard billiard-vision billiard-planner billiard-infinity billiard-projector billiard-table
 # tests/test_NAME.c each; tests/NAME.c shared by them
-TESTS := config position cmd plot draw render player contact_real contact_recorded
-TEST_SHARED := harness scenes
+TESTS := config position cmd plot draw render player contact_real contact_recorded \
+	roots sim
+TEST_SHARED := harness poly_judge scenes
 # tests that are scripts: tests/NAME.sh, called with the build folder
 TEST_SCRIPTS :=
 # bench/bench_NAME.c each
