@@ -8,17 +8,7 @@ static const double ROUNDING = 4e-16;
 /* Balls closer than this share of their squared distance touch: rounding of the positions and of a contact's time. */
 static const double TOUCH = 1e-12;
 
-/* In thesis motion a ball does not turn back under its own spin: it stops (4.91). */
-static void stop_thesis_ball(const struct table *table, struct motion *m)
-{
-	double stop = m->speed / (table->material.mu_slide * table->material.gravity);
-	if (m->begin + stop < m->end) {
-		m->end = m->begin + stop;
-		m->end_kind = EVENT_ROLLING_REST;
-	}
-}
-
-struct motion detect_motion(const struct table *table, const struct model *model, const struct ball *ball, double now)
+struct motion detect_motion(const struct table *table, const struct ball *ball, double now)
 {
 	struct motion m = {.begin = now, .straight = true};
 	double duration = motion_phase_end(ball, table, &m.end_kind);
@@ -28,10 +18,7 @@ struct motion detect_motion(const struct table *table, const struct model *model
 	m.acceleration = motion_acceleration(ball, table);
 	m.speed = vec2_norm(ball->vel);
 	if (ball->phase == BALL_SLIDING) {
-		if (model->thesis_motion)
-			stop_thesis_ball(table, &m);
 		double a = table->material.mu_slide * table->material.gravity;
-		duration = m.end - now;
 		m.reach = m.speed * duration + 0.5 * a * duration * duration;
 		m.straight = fabs(vec2_cross(ball->vel, m.acceleration)) <= ROUNDING * m.speed * a;
 	} else {

@@ -25,7 +25,7 @@ struct motion {
 };
 
 /* Motion of a ball from now on. */
-struct motion detect_motion(const struct table *table, const struct model *model, const struct ball *ball, double now);
+struct motion detect_motion(const struct table *table, const struct ball *ball, double now);
 
 /* Contact time of two balls at or after now (>= both begins), INFINITY if none within their phases. */
 double detect_pair(const struct table *table, const struct ball *a, const struct motion *ma, const struct ball *b,

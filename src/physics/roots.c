@@ -78,24 +78,42 @@ static inline bool falls_at_start(const struct quartic *q)
 	return q->c3 != 0 ? q->c3 < 0 : q->c4 < 0;
 }
 
-enum { NEWTON_MAX = 80 };
+enum { NEWTON_MAX = 200 };
+
+/* Rising from a root at 0: the same entries without that root. */
+static void divide_by_start(struct quartic *q)
+{
+	for (int i = 0; i < 4; i++) {
+		*q = (struct quartic){q->c1, q->c2, q->c3, q->c4, 0};
+		if (q->c0 != 0)
+			return;
+	}
+}
+
+/* The last step, from an iterate that rounding has put on the root's other side; within [low, high]. */
+static double last_step(double s, double v, double d, double low, double high)
+{
+	double next = s - v / d;
+	return next < low ? low : next > high ? high : next;
+}
 
 /* Convex piece: tangents lie below the curve, so steps from the left never pass the first root. A double root halves the
- * distance each time: NEWTON_MAX steps resolve it to rounding. Returns -1 when there is no entry. */
+ * distance each time: some 30 steps resolve it to rounding. Returns -1 when there is no entry. */
 static double convex_entry(const struct quartic *q, double left, double right)
 {
-	double s = left;
+	double s = left, before = left;
 	for (int i = 0; i < NEWTON_MAX; i++) {
 		double v = value(q, s), d = slope(q, s);
 		if (d >= 0)
 			return -1;
 		if (v <= 0)
-			return s;
+			return last_step(s, v, d, before, s);
 		double next = s - v / d;
 		if (next > right)
 			return -1;
 		if (next == s)
 			return s;
+		before = s;
 		s = next;
 	}
 	return s;
@@ -105,18 +123,21 @@ static double convex_entry(const struct quartic *q, double left, double right)
  * so steps from the right end come down to the root from above. */
 static double concave_entry(const struct quartic *q, double left, double right)
 {
-	double s = right;
+	double s = right, before = right;
 	if (value(q, right) > 0 || slope(q, right) >= 0)
 		return -1;
 	for (int i = 0; i < NEWTON_MAX; i++) {
 		double v = value(q, s), d = slope(q, s);
-		if (v >= 0 || d >= 0)
+		if (d >= 0)
 			return s;
+		if (v >= 0)
+			return last_step(s, v, d, s, before);
 		double next = s - v / d;
-		if (next <= left)
-			return left;
+		if (next < left)
+			next = left;
 		if (next == s)
 			return s;
+		before = s;
 		s = next;
 	}
 	return s;
@@ -142,7 +163,7 @@ double roots_quartic_entry(const double c[5], double horizon)
 	if (q.c0 <= 0) {
 		if (falls_at_start(&q))
 			return 0;
-		q.c0 = 0;
+		divide_by_start(&q);
 	}
 	if (positive_hull(&q))
 		return INFINITY;

@@ -11,7 +11,7 @@
 /* A touched ball's motion is new: its own event and its row and column of pairs with it. */
 static void renew_motion(struct sim *sim, int i)
 {
-	sim->motion[i] = detect_motion(sim->table, &sim->model, &sim->ball[i], sim->ball_time[i]);
+	sim->motion[i] = detect_motion(sim->table, &sim->ball[i], sim->ball_time[i]);
 	struct event own = detect_own(sim->table, &sim->model, &sim->ball[i], i, &sim->motion[i], &sim->solved);
 	queue_set_own(&sim->queue, i, &own);
 }

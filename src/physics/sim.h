@@ -48,7 +48,7 @@ struct ball sim_ball(const struct sim *sim, int ball);
 uint64_t sim_hash(const struct sim *sim, uint64_t seed);
 
 /* Mechanical energy in J of all balls on the table: translation and rotation; in thesis motion translation only, as its
- * energy balance has it (8.14 to 8.19: spin there only says how long a ball still slides). */
+ * energy balance has it (8.14 to 8.19). */
 double sim_energy(const struct sim *sim);
 
 #endif
