@@ -117,9 +117,9 @@ START_TEST(text_stays_in_its_box)
 		draw_clear(&list);
 		draw_text(&list, (vec2){-0.8, 0}, 0.055, 0xffffffff, texts[i]);
 		render_draw(render, &list, NULL, 0);
-		int left = 480 - 320, right = left + (int)ceil(0.72 * 0.055 * 400 * (double)strlen(texts[i]));
+		int left = 480 - 320, right = left + (int)ceil(400 * draw_text_width(texts[i], 0.055));
 		int top = 270 - 22, bottom = 270 + 6;
-		int inside = lit_pixels(render, left - 1, top, i == 1 ? WIDTH : right, bottom);
+		int inside = lit_pixels(render, left - 1, top, right, bottom);
 		ck_assert_int_gt(inside, 50);
 		ck_assert_int_eq(lit_pixels(render, 0, 0, WIDTH, HEIGHT), inside);
 	}

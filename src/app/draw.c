@@ -99,6 +99,14 @@ bool draw_text(billiard_draw_list_t *list, vec2 at, double height, uint32_t rgba
 	return true;
 }
 
+double draw_text_width(const char *text, double height)
+{
+	double ems = 0;
+	for (; *text; text++)
+		ems += strchr(" .,:;-/|!'ijlI", *text) ? 0.42 : strchr("mMwW%@", *text) ? 1.05 : 0.80;
+	return ems * height;
+}
+
 static bool is_length(double length)
 {
 	return length >= 0 && length <= REACH; /* false for NaN */

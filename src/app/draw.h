@@ -28,6 +28,8 @@ bool draw_ring(billiard_draw_list_t *list, vec2 centre, double radius, double wi
 bool draw_disc(billiard_draw_list_t *list, vec2 centre, double radius, uint32_t rgba);
 /* at: left end of the baseline, text runs along +x with its top towards +y; height: of the font's em square. Cut at 63 bytes. */
 bool draw_text(billiard_draw_list_t *list, vec2 at, double height, uint32_t rgba, const char *text);
+/* More than the width that any of the fonts in use gives that text at that height, m. */
+double draw_text_width(const char *text, double height);
 
 /* Light that stands for a ball of that colour, 0xRRGGBBFF; never black, which a projector cannot show. */
 uint32_t draw_ball_rgba(int colour);

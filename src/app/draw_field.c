@@ -5,9 +5,9 @@
 
 /* Seen from a camera 1.6 R-lengths of the table above it, a ball in the corner hides the cloth up to 1.97 R from its foot. */
 static const double KEEP = 2.05;	/* radii */
-static const double TEXT_ADVANCE = 0.72; /* ems per character, more than any character of the fonts in use */
 static const double TEXT_STEP = 0.025;	/* m between tried places */
 static const double TEXT_GAP = 0.015;	/* m between text and anything else */
+static const double TEXT_LEAST = 0.5;	/* text shrinks to this share of its height before it is left out */
 static const double TEXT_KEEP = 0.75;	/* radii beyond keep: text is broad, and detectors look around a ball */
 enum { RING_POINTS = 25 };		/* sagitta below 0.5 mm for a halo */
 
@@ -168,18 +168,16 @@ static bool box_meets_segment(const struct box *box, vec2 a, vec2 b)
 	return from <= to;
 }
 
-static struct box text_box(vec2 at, double height, size_t length)
+static struct box text_box(vec2 at, double height, const char *text)
 {
-	double width = TEXT_ADVANCE * height * (double)length;
-	return (struct box){{at.x, at.y - 0.25 * height}, {at.x + width, at.y + height}};
+	return (struct box){{at.x, at.y - 0.25 * height}, {at.x + draw_text_width(text, height), at.y + height}};
 }
 
 static bool box_meets_item(const struct box *box, const billiard_draw_list_t *list, const billiard_draw_item_t *item)
 {
 	const double *xs = &list->xs[item->point_first], *ys = &list->ys[item->point_first];
 	if (item->kind == DRAW_TEXT) {
-		struct box other = text_box((vec2){xs[0], ys[0]}, item->radius,
-					    strnlen((const char *)item->text, sizeof(item->text)));
+		struct box other = text_box((vec2){xs[0], ys[0]}, item->radius, (const char *)item->text);
 		return box->low.x < other.high.x && other.low.x < box->high.x && box->low.y < other.high.y &&
 		       other.low.y < box->high.y;
 	}
@@ -209,25 +207,34 @@ static bool box_is_free(const struct draw_field *field, const billiard_draw_list
 	return true;
 }
 
-bool draw_field_text(const struct draw_field *field, billiard_draw_list_t *list, vec2 near, double reach, double height,
-		     const char *text)
+/* The free place nearest to where the label should be. */
+static bool find_place(const struct draw_field *field, const billiard_draw_list_t *list, const struct draw_label *label,
+		       double height, vec2 *place)
 {
-	struct box whole = text_box((vec2){0, 0}, height, strlen(text));
-	vec2 middle = vec2_scale(vec2_add(whole.low, whole.high), 0.5), best = {0, 0};
+	struct box whole = text_box((vec2){0, 0}, height, label->text);
+	vec2 middle = vec2_scale(vec2_add(whole.low, whole.high), 0.5);
 	int steps_x = (int)(field->table->length / 2 / TEXT_STEP), steps_y = (int)(field->table->width / 2 / TEXT_STEP);
-	double best_distance = reach;
+	double best = label->reach;
 	for (int i = -steps_x; i <= steps_x; i++)
 		for (int j = -steps_y; j <= steps_y; j++) {
 			vec2 centre = {i * TEXT_STEP, j * TEXT_STEP}, at = vec2_sub(centre, middle);
-			if (vec2_dist(centre, near) >= best_distance)
-				continue;
-			struct box box = text_box(at, height, strlen(text));
+			struct box box = text_box(at, height, label->text);
 			struct box wide = {{box.low.x - TEXT_GAP, box.low.y - TEXT_GAP},
 					   {box.high.x + TEXT_GAP, box.high.y + TEXT_GAP}};
-			if (!box_is_free(field, list, &wide))
+			if (vec2_dist(centre, label->near) >= best || !box_is_free(field, list, &wide))
 				continue;
-			best = at;
-			best_distance = vec2_dist(centre, near);
+			*place = at;
+			best = vec2_dist(centre, label->near);
 		}
-	return best_distance < reach && draw_text(list, best, height, 0xe0ffffff, text);
+	return best < label->reach;
+}
+
+bool draw_field_text(const struct draw_field *field, billiard_draw_list_t *list, const struct draw_label *label)
+{
+	for (double share = 1; share >= TEXT_LEAST; share -= 0.25) {
+		vec2 at;
+		if (find_place(field, list, label, share * label->height, &at))
+			return draw_text(list, at, share * label->height, label->rgba, label->text);
+	}
+	return false;
 }

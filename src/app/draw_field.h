@@ -28,9 +28,16 @@ bool draw_field_stroke(const struct draw_field *field, billiard_draw_list_t *lis
 /* The same for a ring; a DRAW_RING when no ball is near. */
 bool draw_field_ring(const struct draw_field *field, billiard_draw_list_t *list, vec2 centre, double radius,
 		     const struct draw_pen *pen);
-/* Text in the free place nearest to `near` (of the text's centre) on the bed: clear of balls and of everything in the list. Not drawn (false)
- * when there is none within reach (m) or the list is full. */
-bool draw_field_text(const struct draw_field *field, billiard_draw_list_t *list, vec2 near, double reach, double height,
-		     const char *text);
+/* A text that goes where it disturbs nothing. */
+struct draw_label {
+	const char *text;
+	vec2 near;			/* m, where its middle should be */
+	double reach;			/* m, how far from there it may be */
+	double height;			/* m; it is drawn smaller, down to half of this, before it is left out */
+	uint32_t rgba;
+};
+/* Puts it in the nearest free place on the bed: clear of balls, pockets and everything in the list but the table's own lines. False when there is none
+ * or the list is full. */
+bool draw_field_text(const struct draw_field *field, billiard_draw_list_t *list, const struct draw_label *label);
 
 #endif

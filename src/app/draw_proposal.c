@@ -12,13 +12,13 @@ static const double HALO = 2.2;		/* radii */
 static const double GHOST = 1.0;	/* radii */
 static const double POCKET = 1.12;	/* pocket radii */
 static const double LINE = 0.005, THIN = 0.004;	/* m */
-static const double TEXT_HEIGHT = 0.055, INFO_HEIGHT = 0.024;	/* m */
-static const double TEXT_REACH = 10, INFO_REACH = 0.2;	/* m */
+static const double TEXT_HEIGHT = 0.055, POCKET_HEIGHT = 0.04, INFO_HEIGHT = 0.024;	/* m */
+static const double TEXT_REACH = 10, POCKET_REACH = 0.6, INFO_REACH = 0.2;	/* m */
 /* Left free for the text by the paths of the other balls. */
 enum { ITEMS_KEPT = 4, POINTS_KEPT = 8 };
 
 static const uint32_t HALO_RGBA = 0xc0ffffff, GHOST_RGBA = 0xffffffff, CUE_RGBA = 0xffffffff, TABLE_RGBA = 0x80c0ffff,
-		      INFO_RGBA = 0xa0e0e0ff;
+		      TEXT_RGBA = 0xe0ffffff, INFO_RGBA = 0xa0e0e0ff;
 
 /* What all parts of one picture need. */
 struct scene {
@@ -54,8 +54,7 @@ static void draw_info(const struct draw_field *field, billiard_draw_list_t *list
 	char text[64];
 	snprintf(text, sizeof(text), "%.15s %.0f %.0f", name, 1000 * pos.x, 1000 * pos.y);
 	vec2 beside = vec2_madd(pos, -3.5 * field->table->ball_radius, (vec2){0, 1});
-	if (draw_field_text(field, list, beside, INFO_REACH, INFO_HEIGHT, text))
-		list->items[list->item_count - 1].rgba = (int32_t)INFO_RGBA;
+	draw_field_text(field, list, &(struct draw_label){text, beside, INFO_REACH, INFO_HEIGHT, INFO_RGBA});
 }
 
 /* ---- proposal ---- */
@@ -162,17 +161,21 @@ static void draw_pocket(const struct scene *scene)
 	draw_field_ring(&scene->field, scene->list, p->centre, POCKET * p->radius, &(struct draw_pen){2 * LINE, rgba, false});
 }
 
-static void draw_label(const struct scene *scene, int number, int shots)
+/* The speed where the player looks, at the cue ball; the pocket's name at the pocket. */
+static void draw_labels(const struct scene *scene, int number, int shots)
 {
-	char text[64], count[16] = "";
+	char text[64];
 	int pocket = scene->shot->pocket, cue = cue_ball(scene);
+	int length = snprintf(text, sizeof(text), "%.1f m/s", scene->shot->speed);
 	if (shots > 1)
-		snprintf(count, sizeof(count), "  %d/%d", number, shots);
-	bool named = pocket >= 0 && pocket < scene->table->pocket_count;
-	snprintf(text, sizeof(text), "%.1f m/s%s%s%s", scene->shot->speed, named ? "  " : "",
-		 named ? scene->table->pocket[pocket].name : "", count);
-	vec2 near = ball_lies(scene, cue) ? ball_start(scene, cue) : (vec2){0, 0};
-	draw_field_text(&scene->field, scene->list, near, TEXT_REACH, TEXT_HEIGHT, text);
+		snprintf(text + length, sizeof(text) - (size_t)length, "  %d/%d", number, shots);
+	vec2 at_cue = ball_lies(scene, cue) ? ball_start(scene, cue) : (vec2){0, 0};
+	draw_field_text(&scene->field, scene->list, &(struct draw_label){text, at_cue, TEXT_REACH, TEXT_HEIGHT, TEXT_RGBA});
+	if (pocket < 0 || pocket >= scene->table->pocket_count)
+		return;
+	const struct pocket *p = &scene->table->pocket[pocket];
+	draw_field_text(&scene->field, scene->list,
+			&(struct draw_label){p->name, p->centre, POCKET_REACH, POCKET_HEIGHT, TEXT_RGBA});
 }
 
 static void draw_infos(const struct scene *scene)
@@ -219,8 +222,8 @@ void draw_proposal(billiard_draw_list_t *list, const struct table *table, const 
 		draw_halos(&scene.field, list);
 	draw_pocket(&scene);
 	draw_paths(&scene);
-	if (isfinite(scene.shot->speed))
-		draw_label(&scene, shot + 1, plan->entries[entry].shot_count);
+	if (scene.shot->speed > 0 && scene.shot->speed < 100)
+		draw_labels(&scene, shot + 1, plan->entries[entry].shot_count);
 	if (options->info)
 		draw_infos(&scene);
 }
@@ -239,7 +242,7 @@ void draw_idle(billiard_draw_list_t *list, const struct table *table, const stru
 	if (options->halo)
 		draw_halos(&field, list);
 	if (note[0])
-		draw_field_text(&field, list, (vec2){0, -table->width / 2}, TEXT_REACH, TEXT_HEIGHT, note);
+		draw_field_text(&field, list, &(struct draw_label){note, {0, -table->width / 2}, TEXT_REACH, TEXT_HEIGHT, TEXT_RGBA});
 	for (int i = 0; options->info && i < count; i++)
 		if (ball[i].phase != BALL_POTTED)
 			draw_info(&field, list, ball[i].pos, ball_colour_name(ball[i].colour));
