@@ -33,7 +33,7 @@ TESTS := config position cmd plot draw render player contact_real contact_record
 	roots sim
 TEST_SHARED := harness poly_judge scenes
 # tests that are scripts: tests/NAME.sh, called with the build folder
-TEST_SCRIPTS :=
+TEST_SCRIPTS := cli
 # bench/bench_NAME.c each
 BENCHES :=
 # fuzz/fuzz_NAME.c each, seeds in fuzz/corpus/NAME

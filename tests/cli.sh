@@ -1,0 +1,149 @@
+#!/bin/bash
+# The command line as people and scripts call it: output, exit status, one line on stderr for bad input. cli.sh BUILD
+set -u
+billiard=$1/billiard
+folder=$(mktemp -d)
+trap 'rm -rf "$folder"' EXIT
+passed=0 failed=0
+unset BILLIARD_CONF
+
+result() { # STATUS NAME
+	if [ "$1" = 0 ]; then
+		passed=$((passed + 1))
+	else
+		failed=$((failed + 1))
+		echo "FAILED: $2"
+		sed 's/^/    out: /' "$folder/out" | head -3
+		sed 's/^/    err: /' "$folder/err" | head -3
+	fi
+}
+
+call() { # ARGUMENT...: fills out, err, status
+	timeout 60 "$billiard" "$@" >"$folder/out" 2>"$folder/err" </dev/null
+	status=$?
+}
+
+refused() { # PATTERN ARGUMENT...: status 2, nothing on stdout, one line on stderr that matches
+	local pattern=$1
+	shift
+	call "$@"
+	[ "$status" = 2 ] && [ ! -s "$folder/out" ] && [ "$(wc -l <"$folder/err")" = 1 ] && grep -q -- "$pattern" "$folder/err"
+	result $? "billiard $* (status $status, wanted /$pattern/)"
+}
+
+works() { # PATTERN ARGUMENT...: status 0, stderr empty, a line of stdout matches
+	local pattern=$1
+	shift
+	call "$@"
+	[ "$status" = 0 ] && [ ! -s "$folder/err" ] && grep -q -- "$pattern" "$folder/out"
+	result $? "billiard $* (status $status, wanted /$pattern/)"
+}
+
+cat >"$folder/pot.txt" <<'EOF'
+# the cue ball sends a red into the pocket in front of it
+WHITE0, WHITE, 500, 250
+RED1, RED, 850, 425
+V, 1500, 750
+EOF
+printf 'WHITE0, WHITE, 0, 0\nRED1, RED, 300, 0\n' >"$folder/two.txt"
+printf 'A, WHITE, 0, 0\n\nB, WHITE, 300, 0\n' >"$folder/whites.txt"
+printf 'A, WHITE, 0, 0\nB, RED, 20, 0\n' >"$folder/overlap.txt"
+printf 'A, WHITE, 0, 0\nB, RED, 2000, 0\n' >"$folder/off.txt"
+printf 'R, RED, 0, 0\n' >"$folder/no-cue.txt"
+sed 's/mu_roll = [0-9.]*/mu_roll = "x"/' config/thesis-table.conf >"$folder/type.conf"
+sed '/mu_slide = /d' config/thesis-table.conf >"$folder/missing.conf"
+head -c 3000 config/thesis-table.conf >"$folder/cut.conf"
+
+# ---- the dispatcher
+works '^billiard [0-9]' --version
+works 'simulate .*event' --help
+refused 'no command'
+refused 'unknown command "dance"' dance
+refused 'unrecognized option' --dance
+for command in $("$billiard" --help | sed -n 's/^  \([a-z]*\)  *.*/\1/p'); do
+	works "usage: billiard $command" "$command" --help
+	refused 'unrecognized option' "$command" --dance
+done
+
+# ---- simulate
+works 'ball_pocket *RED1 .*TOP-RIGHT' simulate "$folder/pot.txt"
+works '"event":"ball_pocket","balls":\["RED1"\],"pocket":"TOP-RIGHT","state":\[{"id":"WHITE0","x":' simulate --json "$folder/pot.txt"
+works '"event":"ball_ball","balls":\["WHITE0","RED1"\]' simulate --json --speed 1000 --angle 0 "$folder/two.txt"
+works 'ball_ball' simulate -c config/snooker-12ft.conf --speed 1000 --angle 0 --side 0.2 --follow -0.3 --elevation 5 "$folder/two.txt"
+for model in thesis simple simple-elastic real real-mathavan; do
+	works 'rolling_stationary' simulate --model "$model" --speed 1000 --angle 0 "$folder/two.txt"
+done
+call simulate --json "$folder/pot.txt"
+cp "$folder/out" "$folder/first"
+call simulate --json "$folder/pot.txt"
+cmp -s "$folder/out" "$folder/first"
+result $? "the same shot twice, byte by byte"
+if command -v python3 >/dev/null; then
+	python3 -c 'import json, sys
+lines = [json.loads(line) for line in open(sys.argv[1])]
+assert [l["t"] for l in lines] == sorted(l["t"] for l in lines)
+assert all(set(b) == {"id", "x", "y", "vx", "vy", "w", "phase"} for l in lines for b in l["state"])
+assert all(b["phase"] in ("REST", "POTTED") for b in lines[-1]["state"])' "$folder/first" 2>"$folder/err"
+	result $? "each line is JSON, in order of time, with every ball's state"
+fi
+works 'ball_pocket' simulate --plot "$folder/plot.svg" "$folder/pot.txt"
+grep -q '</svg>' "$folder/plot.svg"
+result $? "--plot writes an SVG"
+works 'ball_pocket' simulate --plot "$folder/plot.png" "$folder/pot.txt"
+[ "$(head -c 4 "$folder/plot.png" | tail -c 3)" = PNG ]
+result $? "--plot writes a PNG"
+timeout 60 "$billiard" simulate - <"$folder/pot.txt" >"$folder/out" 2>"$folder/err" && grep -q ball_pocket "$folder/out"
+result $? "- is standard input"
+
+refused 'wants one position' simulate
+refused 'wants one position' simulate "$folder/two.txt" "$folder/pot.txt"
+refused 'nonexistent: No such file' simulate "$folder/nonexistent"
+refused ': is a folder' simulate "$folder"
+refused 'two.txt: neither a V line nor --speed' simulate "$folder/two.txt"
+refused 'whites.txt:3: a second cue ball, B' simulate "$folder/whites.txt"
+refused 'overlap.txt:2: B overlaps A' simulate "$folder/overlap.txt"
+refused 'off.txt:2: B: .* not on the bed' simulate "$folder/off.txt"
+refused 'no-cue.txt: no cue ball' simulate --speed 1000 --angle 0 "$folder/no-cue.txt"
+refused -- '--speed: found "fast", allowed a number 0.001 to 20000' simulate --speed fast --angle 0 "$folder/two.txt"
+refused -- '--speed: found "0"' simulate --speed 0 --angle 0 "$folder/two.txt"
+refused -- '--angle: found "nan"' simulate --speed 1 --angle nan "$folder/two.txt"
+refused 'belong together' simulate --speed 1 "$folder/two.txt"
+refused 'miss the ball' simulate --side 0.8 --follow 0.8 "$folder/pot.txt"
+refused -- '--model: found "dream", allowed thesis' simulate --model dream "$folder/pot.txt"
+refused 'ends neither in .svg nor in .png' simulate --plot a.gif "$folder/pot.txt"
+refused '^/nonexistent/a.svg: ' simulate --plot /nonexistent/a.svg "$folder/pot.txt"
+refused "type.conf:[0-9]*: material.mu_roll: found \"x\", allowed a number 0.001 to 0.1" simulate -c "$folder/type.conf" "$folder/pot.txt"
+refused "missing.conf:[0-9]*: material.mu_slide: found nothing, allowed a number 0.01 to 1" simulate -c "$folder/missing.conf" "$folder/pot.txt"
+refused 'cut.conf:[0-9]*: syntax error' simulate -c "$folder/cut.conf" "$folder/pot.txt"
+
+# ---- shots of another simulator
+printf '{"table": {}, ' >"$folder/cut.json"
+printf '{"table": {}}' >"$folder/empty.json"
+refused 'nonexistent.json: ' simulate --shot "$folder/nonexistent.json"
+refused 'cut.json:' simulate --shot "$folder/cut.json"
+refused 'empty.json:' simulate --shot "$folder/empty.json"
+refused 'wants one position, or one --shot' simulate --shot "$folder/empty.json" "$folder/pot.txt"
+
+# ---- detect: what is no photograph. What is one, tests/ and eval see to.
+printf 'P6 1 1 255 abc' >"$folder/text.png"
+refused 'wants images' detect
+refused 'nonexistent.png' detect "$folder/nonexistent.png"
+refused 'text.png' detect "$folder/text.png"
+refused 'overlay takes one image' detect --overlay "$folder/o.png" "$folder/plot.png" "$folder/plot.png"
+call detect --json "$folder/text.png" "$folder/plot.png"
+[ "$status" = 2 ]
+result $? "detect: one bad image of two gives status 2"
+
+# ---- plan
+works '"rank":1' plan --json --target RED "$folder/pot.txt"
+refused 'whites.txt:3: a second cue ball' plan "$folder/whites.txt"
+refused 'nonexistent: No such file' plan "$folder/nonexistent"
+
+if [ -w /dev/full ]; then
+	timeout 60 "$billiard" simulate --json "$folder/pot.txt" >/dev/full 2>"$folder/err"
+	[ $? = 1 ] && [ "$(wc -l <"$folder/err")" = 1 ]
+	result $? "a full disk is an error"
+fi
+
+echo "$passed passed, $failed failed"
+[ "$failed" = 0 ]
