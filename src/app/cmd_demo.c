@@ -23,7 +23,7 @@ static const double RADIAN_DEG = 57.29577951308232;
 enum { TICK_US = 50000, TEXT_SIZE = 256 };
 
 struct demo_options {
-	const char *config, *out, *input;
+	const char *config, *out, *input, *position;
 	int shots;
 };
 
@@ -284,13 +284,15 @@ static int on_tick(sd_event_source *source, uint64_t usec, void *context)
 
 static int start_services(struct demo *d, char *err, size_t err_size)
 {
-	char source[TEXT_SIZE + 32] = "--source lcm:CAMERA";
+	char source[TEXT_SIZE + 32] = "--source lcm:CAMERA", position[TEXT_SIZE + 32] = "";
+	if (d->options.position)
+		snprintf(position, sizeof position, "--position %s", d->options.position);
 	if (d->options.input)
 		snprintf(source, sizeof source, "--hold 4 --source dir:%s", d->options.input);
 	const struct { const char *name, *arguments; bool wanted; } services[] = {
 		{"billiard-planner", "", true},	 {"billiard-projector", "", true},
 		{"billiard-infinity", "", true}, {"billiard-vision", source, true},
-		{"billiard-table", "", !d->options.input},
+		{"billiard-table", position, !d->options.input},
 	};
 	int r = 0;
 	for (size_t i = 0; i < sizeof services / sizeof services[0] && r == 0; i++)
@@ -336,8 +338,9 @@ static int parse(struct demo_options *o, int argc, char **argv)
 {
 	static const struct option table[] = {{"config", required_argument, NULL, 'c'}, {"out", required_argument, NULL, 'o'},
 					      {"input", required_argument, NULL, 'i'},	{"shots", required_argument, NULL, 'n'},
-					      {"help", no_argument, NULL, 'h'},		{NULL, 0, NULL, 0}};
-	*o = (struct demo_options){config_default_path(), "build/demo", NULL, 5};
+					      {"position", required_argument, NULL, 'p'}, {"help", no_argument, NULL, 'h'},
+					      {NULL, 0, NULL, 0}};
+	*o = (struct demo_options){config_default_path(), "build/demo", NULL, NULL, 5};
 	int c;
 	while ((c = getopt_long(argc, argv, "c:h", table, NULL)) != -1) {
 		if (c == 'c')
@@ -346,11 +349,13 @@ static int parse(struct demo_options *o, int argc, char **argv)
 			o->out = optarg;
 		else if (c == 'i')
 			o->input = optarg;
+		else if (c == 'p')
+			o->position = optarg;
 		else if (c == 'n' && ((o->shots = atoi(optarg)) < 1 || o->shots > 1000)) {
 			fprintf(stderr, "billiard demo: --shots: found \"%s\", allowed 1..1000\n", optarg);
 			return 2;
 		} else if (c == 'h') {
-			puts("usage: billiard demo [-c CONF] [--out DIR] [--shots N | --input FOLDER]\n"
+			puts("usage: billiard demo [-c CONF] [--out DIR] [--shots N] [--position FILE] | --input FOLDER\n"
 			     "The whole loop on the virtual table (or on photographs), with two pictures per proposal in DIR.");
 			return 1;
 		} else if (c == '?')
