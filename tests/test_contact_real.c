@@ -1,4 +1,5 @@
-/* Properties of the realistic contact laws, and two of them against slow integrations of their own differential equations. */
+/* Properties of the realistic contact laws, and two of them against slow integrations of their own differential
+ * equations. */
 #include "harness.h"
 
 #include <stdio.h>
@@ -107,7 +108,8 @@ START_TEST(balls_keep_momentum_and_lose_energy)
 		double before = energy(&t, &p.a) + energy(&t, &p.b), after = energy(&t, &q.a) + energy(&t, &q.b);
 		ck_assert_double_le(after, before * (1 + 1e-14));
 		vec2 n = vec2_unit(p.b.pos);
-		double approach = vec2_dot(n, vec2_sub(p.a.vel, p.b.vel)), leave = vec2_dot(n, vec2_sub(q.b.vel, q.a.vel));
+		double approach = vec2_dot(n, vec2_sub(p.a.vel, p.b.vel)),
+		       leave = vec2_dot(n, vec2_sub(q.b.vel, q.a.vel));
 		ck_assert_double_eq_tol(leave, t.material.e_ball * approach, 1e-13);
 	}
 }
@@ -180,7 +182,8 @@ START_TEST(ball_friction_only_brakes_the_slip)
 }
 END_TEST
 
-/* A plain full hit has no tangential part; a cut throws the object ball towards the cue ball's way, less at high speed. */
+/* A plain full hit has no tangential part; a cut throws the object ball towards the cue ball's way, less at high speed.
+ */
 START_TEST(throw_has_the_right_sign_and_falls_with_speed)
 {
 	struct random r = random_begin("throw_has_the_right_sign_and_falls_with_speed");
@@ -326,13 +329,15 @@ START_TEST(stronge_is_continuous_in_the_slip)
 }
 END_TEST
 
-/* Mathavan's scheme itself: explicit steps of the normal impulse, friction against the slip of the moment. Meaningful only
- * while the cloth stays loaded: where slip ends it chatters about zero, and only then averages to the law's own answer. */
+/* Mathavan's scheme itself: explicit steps of the normal impulse, friction against the slip of the moment. Meaningful
+ * only while the cloth stays loaded: where slip ends it chatters about zero, and only then averages to the law's own
+ * answer. */
 static void mathavan_stepped(const struct table *t, double nose, struct ball *b)
 {
 	const struct material *m = &t->material;
 	double r = t->ball_radius, s = nose / r - 1, c = sqrt(1 - s * s), dp = -b->vel.y * 2e-5;
-	double vx = b->vel.x, vy = -b->vel.y, wx = -b->spin[0], wy = b->spin[1], wz = -b->spin[2], work = 0, target = INFINITY;
+	double vx = b->vel.x, vy = -b->vel.y, wx = -b->spin[0], wy = b->spin[1], wz = -b->spin[2], work = 0,
+	       target = INFINITY;
 	while (work < target) {
 		double ix = vx + r * (wy * s - wz * c), iy = -vy * s + r * wx, cx = vx - r * wy, cy = vy + r * wx;
 		double in = hypot(ix, iy), cn = hypot(cx, cy);

@@ -1,5 +1,5 @@
-/* The realistic contact laws against resolutions that another simulator recorded, and Mathavan's law against 180 rebounds
- * that were integrated in small steps. Skipped where the data are not there. */
+/* The realistic contact laws against resolutions that another simulator recorded, and Mathavan's law against 180
+ * rebounds that were integrated in small steps. Skipped where the data are not there. */
 #include "harness.h"
 
 #include <jansson.h>
@@ -64,9 +64,9 @@ static double relative_difference(const struct table *t, const struct ball *a, c
 	return d / speed;
 }
 
-/* After resolving, the recording simulator moves a tenth of the faster ball's speed along the line of centres to the slower
- * one where two balls move nearly alike. It raises the energy and is no part of the law; here it is done to the law's result
- * before comparing. */
+/* After resolving, the recording simulator moves a tenth of the faster ball's speed along the line of centres to the
+ * slower one where two balls move nearly alike. It raises the energy and is no part of the law; here it is done to the
+ * law's result before comparing. */
 static bool recorder_parts_slow_pairs(struct ball *a, struct ball *b)
 {
 	vec2 n = vec2_unit(vec2_sub(b->pos, a->pos));
@@ -85,12 +85,14 @@ struct tally {
 	int count[3], parted;
 };
 
-static void check_balls(const struct table *t, const json_t *event, const char *first, const char *second, struct tally *tally)
+static void check_balls(const struct table *t, const json_t *event, const char *first, const char *second,
+			struct tally *tally)
 {
 	struct ball a = recorded_ball(event, "pre", first), b = recorded_ball(event, "pre", second);
 	struct ball want_a = recorded_ball(event, "post", first), want_b = recorded_ball(event, "post", second);
 	double speed = vec2_norm(a.vel) + vec2_norm(b.vel);
-	/* The recorder moves the balls apart by its spacer before it resolves: the line of centres is that of the post state. */
+	/* The recorder moves the balls apart by its spacer before it resolves: the line of centres is that of the post
+	 * state. */
 	a.pos = want_a.pos;
 	b.pos = want_b.pos;
 	contact_ball_frictional(t, &a, &b);
@@ -104,19 +106,19 @@ static const json_t *cushion_by_id(const json_t *table, const char *kind, const 
 {
 	size_t i;
 	const json_t *c;
-	json_array_foreach(json_object_get(table, kind), i, c)
-		if (strcmp(json_string_value(json_object_get(c, "id")), id) == 0)
-			return c;
+	json_array_foreach(json_object_get(table, kind), i,
+			   c) if (strcmp(json_string_value(json_object_get(c, "id")), id) == 0) return c;
 	ck_abort_msg("no cushion %s", id);
 	return NULL;
 }
 
-static void check_cushion(const struct table *t, const json_t *json_table, const json_t *event, bool circular, double kiss,
-			  struct tally *tally)
+static void check_cushion(const struct table *t, const json_t *json_table, const json_t *event, bool circular,
+			  double kiss, struct tally *tally)
 {
 	const json_t *ids = json_object_get(event, "ids");
 	const char *id = json_string_value(json_array_get(ids, 0));
-	const json_t *c = cushion_by_id(json_table, circular ? "circular" : "linear", json_string_value(json_array_get(ids, 1)));
+	const json_t *c =
+		cushion_by_id(json_table, circular ? "circular" : "linear", json_string_value(json_array_get(ids, 1)));
 	struct ball ball = recorded_ball(event, "pre", id), want = recorded_ball(event, "post", id);
 	double speed = vec2_norm(ball.vel), r = t->ball_radius, distance = r + kiss;
 	vec2 normal = vec2_unit((vec2){number(c, "lx"), number(c, "ly")});
@@ -126,18 +128,21 @@ static void check_cushion(const struct table *t, const json_t *json_table, const
 	}
 	if (vec2_dot(normal, ball.vel) > 0)
 		normal = vec2_scale(normal, -1);
-	/* The recorder's contact normal points from the nose line, or a jaw's axis at nose height, to the ball's centre. */
+	/* The recorder's contact normal points from the nose line, or a jaw's axis at nose height, to the ball's
+	 * centre. */
 	contact_cushion_stronge(t, normal, r + (number(c, "height") - r) * r / distance, &ball);
 	tally->count[1 + circular]++;
 	tally->worst[1 + circular] = fmax(tally->worst[1 + circular], relative_difference(t, &ball, &want, speed));
 }
 
-static void check_event(const struct table *t, const json_t *json_table, const json_t *event, double kiss, struct tally *tally)
+static void check_event(const struct table *t, const json_t *json_table, const json_t *event, double kiss,
+			struct tally *tally)
 {
 	const char *type = json_string_value(json_object_get(event, "type"));
 	const json_t *ids = json_object_get(event, "ids");
 	if (strcmp(type, "ball_ball") == 0)
-		check_balls(t, event, json_string_value(json_array_get(ids, 0)), json_string_value(json_array_get(ids, 1)), tally);
+		check_balls(t, event, json_string_value(json_array_get(ids, 0)),
+			    json_string_value(json_array_get(ids, 1)), tally);
 	else if (strcmp(type, "ball_linear_cushion") == 0)
 		check_cushion(t, json_table, event, false, kiss, tally);
 	else if (strcmp(type, "ball_circular_cushion") == 0)
@@ -152,7 +157,8 @@ START_TEST(every_recorded_resolution_is_reproduced)
 	struct tally tally = {{0}, {0}, 0};
 	size_t i, k;
 	json_t *shot, *event;
-	json_array_foreach(json_object_get(root, "shots"), i, shot) {
+	json_array_foreach(json_object_get(root, "shots"), i, shot)
+	{
 		const char *name = json_string_value(json_object_get(shot, "set"));
 		if (strncmp(name, "default_", 8) != 0)
 			continue;
@@ -189,10 +195,12 @@ START_TEST(mathavan_rebounds_are_reproduced)
 	int count = 0;
 	while (fgets(line, sizeof line, file)) {
 		double v, alpha, top, side, vx, vy, w[3];
-		if (sscanf(line, "%lf,%lf,%lf,%lf,%lf,%lf,%lf,%lf,%lf", &v, &alpha, &top, &side, &vx, &vy, &w[0], &w[1], &w[2]) != 9)
+		if (sscanf(line, "%lf,%lf,%lf,%lf,%lf,%lf,%lf,%lf,%lf", &v, &alpha, &top, &side, &vx, &vy, &w[0], &w[1],
+			   &w[2]) != 9)
 			continue;
 		alpha *= M_PI / 180;
-		struct ball b = {.vel = {v * cos(alpha), v * sin(alpha)}, .spin = {-top * sin(alpha), top * cos(alpha), side}};
+		struct ball b = {.vel = {v * cos(alpha), v * sin(alpha)},
+				 .spin = {-top * sin(alpha), top * cos(alpha), side}};
 		contact_cushion_mathavan(&t, (vec2){0, -1}, 0.03675, &b);
 		worst_speed = fmax(worst_speed, fmax(fabs(b.vel.x - vx), fabs(b.vel.y - vy)));
 		for (int i = 0; i < 3; i++)

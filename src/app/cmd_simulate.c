@@ -1,4 +1,5 @@
 /* billiard simulate: the events of one shot, with the state of every ball after each. */
+#include <errno.h>
 #include <getopt.h>
 #include <math.h>
 #include <stdio.h>
@@ -8,13 +9,14 @@
 #include "app/cmd.h"
 #include "app/plot.h"
 #include "app/position.h"
+#include "app/shot_file.h"
 #include "physics/sim.h"
 
 static const double mm = 1000;	/* in a metre */
 enum { EVENT_LIMIT = 10000 };
 
 struct options {
-	const char *config, *model, *plot, *position;
+	const char *config, *model, *plot, *position, *shot_file;
 	double speed, angle, side, follow, elevation;	/* mm/s, degrees, shares, degrees */
 	bool has_speed, has_angle, json;
 };
@@ -31,7 +33,8 @@ struct run {
 static void help(void)
 {
 	puts("usage: billiard simulate [-c CONF] [--model NAME] POSITION.txt [--speed MM_S --angle DEG]\n"
-	     "                         [--side R] [--follow R] [--elevation DEG] [--json] [--plot FILE.svg|.png]\n\n"
+	     "                         [--side R] [--follow R] [--elevation DEG] [--json] [--plot FILE.svg|.png]\n"
+	     "       billiard simulate --shot SHOT.json\n\n"
 	     "  -c, --config CONF  table, default $BILLIARD_CONF or the installed one\n"
 	     "  --model NAME       thesis, simple, simple-elastic, real, real-mathavan\n"
 	     "  --speed MM_S       of the cue ball after the strike; default: the V line of the position\n"
@@ -41,12 +44,13 @@ static void help(void)
 	     "  --elevation DEG    of the cue\n"
 	     "  --json             one JSON object per event\n"
 	     "  --plot FILE        draws the paths\n"
+	     "  --shot SHOT.json   a shot of another simulator; events are printed as JSON in its frame and SI units\n"
 	     "POSITION.txt holds \"ID, TYPE, x, y\" lines in mm (- is standard input).");
 }
 
 /* ---- command line --------------------------------------------------------------------------------------------------- */
 
-enum { OPT_MODEL = 256, OPT_SPEED, OPT_ANGLE, OPT_SIDE, OPT_FOLLOW, OPT_ELEVATION, OPT_PLOT, OPT_JSON };
+enum { OPT_MODEL = 256, OPT_SPEED, OPT_ANGLE, OPT_SIDE, OPT_FOLLOW, OPT_ELEVATION, OPT_PLOT, OPT_JSON, OPT_SHOT };
 
 static int take_option(struct options *options, int c)
 {
@@ -72,6 +76,9 @@ static int take_option(struct options *options, int c)
 	case OPT_PLOT:
 		options->plot = optarg;
 		return plot_format_known(optarg) ? CMD_OK : cmd_bad_input("--plot: \"%s\" ends neither in .svg nor in .png", optarg);
+	case OPT_SHOT:
+		options->shot_file = optarg;
+		return CMD_OK;
 	case OPT_JSON:
 		options->json = true;
 		return CMD_OK;
@@ -88,8 +95,8 @@ static int parse(struct options *options, int argc, char **argv)
 		{"speed", required_argument, NULL, OPT_SPEED},	    {"angle", required_argument, NULL, OPT_ANGLE},
 		{"side", required_argument, NULL, OPT_SIDE},	    {"follow", required_argument, NULL, OPT_FOLLOW},
 		{"elevation", required_argument, NULL, OPT_ELEVATION}, {"plot", required_argument, NULL, OPT_PLOT},
-		{"json", no_argument, NULL, OPT_JSON},		    {"help", no_argument, NULL, 'h'},
-		{NULL, 0, NULL, 0},
+		{"json", no_argument, NULL, OPT_JSON},		    {"shot", required_argument, NULL, OPT_SHOT},
+		{"help", no_argument, NULL, 'h'},		    {NULL, 0, NULL, 0},
 	};
 	int c;
 	while ((c = getopt_long(argc, argv, "c:h", table, NULL)) != -1) {
@@ -101,8 +108,10 @@ static int parse(struct options *options, int argc, char **argv)
 		if (status != CMD_OK)
 			return status;
 	}
-	if (optind != argc - 1)
-		return cmd_usage(argv[0], "wants one position");
+	if (options->shot_file && optind == argc)
+		return CMD_OK;
+	if (options->shot_file || optind != argc - 1)
+		return cmd_usage(argv[0], "wants one position, or one --shot");
 	options->position = argv[optind];
 	if (options->has_speed != options->has_angle)
 		return cmd_usage(argv[0], "--speed and --angle belong together");
@@ -242,12 +251,33 @@ static int plot(struct run *run, const char *path)
 	return code < 0 ? cmd_bad_input("%s", err) : CMD_OK;
 }
 
+static int simulate_shot_file(const char *path)
+{
+	char err[CMD_ERROR_SIZE];
+	struct shot_file *file = malloc(sizeof *file);
+	if (!file)
+		return cmd_bad_input("billiard simulate: out of memory");
+	int status = CMD_OK;
+	if (shot_file_read(file, path, err, sizeof err) < 0) {
+		status = cmd_bad_input("%s", err);
+	} else {
+		int r = shot_file_run(file, EVENT_LIMIT, stdout);
+		if (r < 0)
+			fprintf(stderr, "billiard simulate: %s\n", r == -ETIME ? "stopped, too many events" : strerror(-r));
+		status = r < 0 ? CMD_FAILED : CMD_OK;
+	}
+	free(file);
+	return status;
+}
+
 int cmd_simulate(int argc, char **argv)
 {
 	struct options options = {0};
 	int status = parse(&options, argc, argv);
 	if (status != CMD_OK)
 		return status < 0 ? CMD_OK : status;
+	if (options.shot_file)
+		return simulate_shot_file(options.shot_file);
 	struct run *run = calloc(1, sizeof *run);
 	if (!run)
 		return cmd_bad_input("%s: out of memory", argv[0]);

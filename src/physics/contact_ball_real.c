@@ -25,7 +25,8 @@ static vec2 friction_impulse(const struct material *m, vec2 slip, double normal_
 	return vec2_scale(slip, -fmin(mu * normal_impulse / speed, 1.0 / 7));
 }
 
-/* A tangential impulse (t, z components, per unit mass) at the end of the radius along +n turns a ball about z and t. */
+/* A tangential impulse (t, z components, per unit mass) at the end of the radius along +n turns a ball about z and t.
+ */
 static void turn(vec2 n, vec2 impulse, double radius, double spin[3])
 {
 	vec2 about = vec2_scale(vec2_perp(n), -2.5 / radius * impulse.y);
@@ -46,8 +47,8 @@ void contact_ball_frictional(const struct table *table, struct ball *a, struct b
 
 	/* w x (r n) is r (wz t - wt z); the second ball's radius points the other way. */
 	vec2 slip = {va.y - vb.y + r * (a->spin[2] + b->spin[2]), -r * spin.y};
-	/* The reference shots take the separation speed, e times the approach speed, for the impulse that friction is a share of;
-	 * Coulomb's law has (1 + e) / 2 of it, 2.6 % more at e = 0.95. */
+	/* The reference shots take the separation speed, e times the approach speed, for the impulse that friction is a
+	 * share of; Coulomb's law has (1 + e) / 2 of it, 2.6 % more at e = 0.95. */
 	vec2 friction = friction_impulse(m, slip, m->e_ball * approach);
 	double normal = 0.5 * (1 + m->e_ball) * approach;
 	vec2 change = from_line(n, (vec2){-normal, friction.x});

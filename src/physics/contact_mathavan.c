@@ -6,24 +6,24 @@
  * centre, and the cloth at C, radius (0, 0, -1). The normal impulse P at I, per unit mass (m/s), is the variable of
  * integration. Friction at I acts along e1 = x and e2 = (0, -s, c).
  *
- * The slip of the ball's surface at I (e1, e2) and C (x, y) is all that the friction depends on, and the velocity into the
- * cushion follows from it: vy = (C2 - I2) / (1 + s). So the state is these four and the work done by the normal impulse.
- * While a slip is small its direction obeys a stiff equation: hence an L-stable method. */
+ * The slip of the ball's surface at I (e1, e2) and C (x, y) is all that the friction depends on, and the velocity into
+ * the cushion follows from it: vy = (C2 - I2) / (1 + s). So the state is these four and the work done by the normal
+ * impulse. While a slip is small its direction obeys a stiff equation: hence an L-stable method. */
 
 enum { I1, I2, C1, C2, WORK, DIM, SLIPS = WORK };
 enum place { NOSE, CLOTH };
 
 struct impact {
-	double s, c;			/* sine and cosine of the nose's angle above the centre */
+	double s, c; /* sine and cosine of the nose's angle above the centre */
 	double mu[2];
 	bool stick[2];
-	vec2 onset[2];			/* where slip begins after sticking and has no direction yet, the one it takes; else 0 */
-	double rest_slip;		/* m/s: smaller slip counts as none */
+	vec2 onset[2];	  /* where slip begins after sticking and has no direction yet, the one it takes; else 0 */
+	double rest_slip; /* m/s: smaller slip counts as none */
 	double z[DIM];
 };
 
 struct friction {
-	vec2 nose, cloth;	/* per unit normal impulse at I */
+	vec2 nose, cloth; /* per unit normal impulse at I */
 };
 
 static vec2 slip_of(const double z[DIM], enum place place)
@@ -208,7 +208,8 @@ static const double COUPLE[6][5] = {
 };
 
 /* Stage equation: slips by the inverted matrix, then the work, which depends on the slips only. */
-static void solve_stage(const struct impact *im, double h, double inverse[SLIPS][SLIPS], const double right[DIM], double k[DIM])
+static void solve_stage(const struct impact *im, double h, double inverse[SLIPS][SLIPS], const double right[DIM],
+			double k[DIM])
 {
 	for (int i = 0; i < SLIPS; i++) {
 		k[i] = 0;
@@ -300,8 +301,8 @@ static double slip_limit(const struct impact *im, const double rates[DIM])
 	return limit;
 }
 
-/* Normal impulse until the compression ends (target NAN) or the work has fallen to target, if vy went on changing as it does
- * now; INFINITY if it never would. */
+/* Normal impulse until the compression ends (target NAN) or the work has fallen to target, if vy went on changing as it
+ * does now; INFINITY if it never would. */
 static double impulse_left(const struct impact *im, double target, const double rates[DIM])
 {
 	double vy = velocity_into(im, im->z), rate = velocity_into(im, rates);
@@ -314,8 +315,8 @@ static double impulse_left(const struct impact *im, double target, const double 
 	return speed > 0 ? 2 * left / speed : INFINITY;
 }
 
-/* Shares of the speed before. Error estimate allowed a step: the result is good to about ten times less. A slip that counts
- * as none. Reached only where friction wedges the ball in for good: STEPS_MAX. */
+/* Shares of the speed before. Error estimate allowed a step: the result is good to about ten times less. A slip that
+ * counts as none. Reached only where friction wedges the ball in for good: STEPS_MAX. */
 static const double TOLERANCE = 1e-7, REST_SLIP = 1e-6;
 enum { STEPS_MAX = 2000 };
 
@@ -354,7 +355,10 @@ void contact_cushion_mathavan(const struct table *table, vec2 normal, double nos
 	/* Beyond these heights the ball would pass under or over the nose. */
 	double s = fmin(fmax(nose_height / r - 1, -0.9), 0.9), c = sqrt(1 - s * s);
 	double scale = fabs(vx) + vy + fabs(wx) + fabs(wy) + fabs(wz);
-	struct impact im = {.s = s, .c = c, .mu = {m->mu_cushion, m->mu_slide}, .rest_slip = REST_SLIP * scale,
+	struct impact im = {.s = s,
+			    .c = c,
+			    .mu = {m->mu_cushion, m->mu_slide},
+			    .rest_slip = REST_SLIP * scale,
 			    .z = {vx + wy * s - wz * c, wx - vy * s, vx - wy, vy + wx, 0}};
 	double first[2] = {im.z[I1], im.z[C1]};
 	integrate(&im, NAN, scale);

@@ -1,6 +1,6 @@
-/* Contact laws of the realistic models: what one contact does to velocity and spin. Pure functions: they change vel and spin
- * only, the caller sets the phase. All are exact about symmetry: mirrored or turned input gives mirrored or turned output
- * up to rounding. Constants are those of table->material. */
+/* Contact laws of the realistic models: what one contact does to velocity and spin. Pure functions: they change vel and
+ * spin only, the caller sets the phase. All are exact about symmetry: mirrored or turned input gives mirrored or turned
+ * output up to rounding. Constants are those of table->material. */
 #ifndef BILLIARD_PHYSICS_CONTACT_REAL_H
 #define BILLIARD_PHYSICS_CONTACT_REAL_H
 
@@ -11,17 +11,19 @@
  * velocity, which the cloth and gravity take up at once, is dropped. Precondition: the balls approach (asserted). */
 void contact_ball_frictional(const struct table *table, struct ball *a, struct ball *b);
 
-/* Compliant impact on a cushion (Stronge 2000, ch. 5): normal and tangential springs with frequency ratio stronge_omega in
- * (1, 2), restitution e_cushion > 1 / stronge_omega, Coulomb friction mu_cushion; outside of these ranges the spring is taken
- * as stiff. normal: unit, from the cushion towards the ball. The contact lies on the line from the ball's centre to a nose
- * one radius away at nose_height (m above the bed, 0 to 2 r): its angle above the horizontal has the tangent
- * nose_height / r - 1. The bed's reaction is left out, vertical velocity dropped. Precondition: the ball approaches. */
+/* Compliant impact on a cushion (Stronge 2000, ch. 5): normal and tangential springs with frequency ratio stronge_omega
+ * in (1, 2), restitution e_cushion > 1 / stronge_omega, Coulomb friction mu_cushion; outside of these ranges the spring
+ * is taken as stiff. normal: unit, from the cushion towards the ball. The contact lies on the line from the ball's
+ * centre to a nose one radius away at nose_height (m above the bed, 0 to 2 r): its angle above the horizontal has the
+ * tangent nose_height / r - 1. The bed's reaction is left out, vertical velocity dropped. Precondition: the ball
+ * approaches. */
 void contact_cushion_stronge(const struct table *table, vec2 normal, double nose_height, struct ball *ball);
 
-/* Impact on a cushion nose at nose_height (m, 0 to 2 r), pressing the ball on the cloth (Mathavan, Jackson, Parkin 2010):
- * normal impulse integrated with friction at nose (mu_cushion) and cloth (mu_slide), restitution e_cushion of the work done at
- * the nose. Sticking at either contact is part of the law and handled as a mode of its own. The integration leaves an
- * error below 1e-5 of the speed before (surface speed of the spin included). Precondition: the ball approaches. */
+/* Impact on a cushion nose at nose_height (m, 0 to 2 r), pressing the ball on the cloth (Mathavan, Jackson, Parkin
+ * 2010): normal impulse integrated with friction at nose (mu_cushion) and cloth (mu_slide), restitution e_cushion of
+ * the work done at the nose. Sticking at either contact is part of the law and handled as a mode of its own. The
+ * integration leaves an error below 1e-5 of the speed before (surface speed of the spin included). Precondition: the
+ * ball approaches. */
 void contact_cushion_mathavan(const struct table *table, vec2 normal, double nose_height, struct ball *ball);
 
 #endif

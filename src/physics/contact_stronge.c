@@ -2,18 +2,18 @@
 
 #include "physics/contact_real.h"
 
-/* Time runs in units of the inverse normal frequency: compression lasts pi/2, restitution e times as long. Slip is counted
- * along its first direction, everything is divided by the approach speed, so that the incoming ball has normal velocity
- * -1 and slip x > 0. */
+/* Time runs in units of the inverse normal frequency: compression lasts pi/2, restitution e times as long. Slip is
+ * counted along its first direction, everything is divided by the approach speed, so that the incoming ball has normal
+ * velocity -1 and slip x > 0. */
 
 /* Inverse tangential mass of a solid sphere: 1 + 5/2. */
 static const double BETA = 3.5;
 
 struct compliance {
-	double e;	/* restitution */
-	double mu;	/* friction */
-	double omega;	/* tangential over normal frequency */
-	double eta2;	/* normal over tangential stiffness */
+	double e;     /* restitution */
+	double mu;    /* friction */
+	double omega; /* tangential over normal frequency */
+	double eta2;  /* normal over tangential stiffness */
 };
 
 /* The tangential spring's stretch and rate where the contact point begins to stick. */
@@ -76,8 +76,8 @@ static double stick_end(const struct compliance *c, const struct stick *s)
 	return 0.5 * (low + high);
 }
 
-/* Slip after the impact for slip x before it, both per approach speed. Where the spring could not recoil in the time that
- * the impact lasts, the limit of a stiff one: Coulomb friction until the slip ends. */
+/* Slip after the impact for slip x before it, both per approach speed. Where the spring could not recoil in the time
+ * that the impact lasts, the limit of a stiff one: Coulomb friction until the slip ends. */
 static double slip_after(const struct compliance *c, double x)
 {
 	if (!(c->omega > 1 && c->omega < 2 && c->e * c->omega > 1))
@@ -97,8 +97,8 @@ void contact_cushion_stronge(const struct table *table, vec2 normal, double nose
 	assert(nose_height >= 0 && nose_height <= 2 * r);
 	double slope = nose_height / r - 1, cosine = 1 / sqrt(1 + slope * slope), sine = slope * cosine;
 	vec2 t = vec2_perp(normal);
-	/* Components along normal (n), across it (t) and up (z); the contact point is -r (cosine n - sine z) from the centre. The
-	 * contact's own frame: its normal cosine n - sine z, its tangents t and sine n + cosine z. */
+	/* Components along normal (n), across it (t) and up (z); the contact point is -r (cosine n - sine z) from the
+	 * centre. The contact's own frame: its normal cosine n - sine z, its tangents t and sine n + cosine z. */
 	double vn = vec2_dot(normal, ball->vel), vt = vec2_dot(t, ball->vel);
 	double wn = normal.x * ball->spin[0] + normal.y * ball->spin[1];
 	double wt = t.x * ball->spin[0] + t.y * ball->spin[1];

@@ -120,7 +120,7 @@ static int add_tips(struct table *t, char *err, size_t err_size)
 {
 	for (int i = 0; i < t->cushion_count; i++) {
 		const struct cushion *c = &t->cushion[i];
-		for (int k = 0; k < 2; k++) {
+		for (int k = 0; k < 2 && !c->open_ends; k++) {
 			vec2 end = k ? c->b : c->a;
 			if (end_is_covered(t, end))
 				continue;

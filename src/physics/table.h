@@ -18,6 +18,7 @@ struct cushion {
 	double span;		/* m, distance of a and b; computed by table_finish() */
 	double nose_height;	/* m above the bed */
 	bool two_sided;		/* a ball may touch it from either side */
+	bool open_ends;		/* no sharp tips are added where no jaw covers its ends */
 	bool main_rail;		/* one of the six long noses (mirrors of the search); false: a pocket's jaw */
 };
 
