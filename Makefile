@@ -168,7 +168,7 @@ fuzzers: $(FUZZ_BINS)
 # Static checks (package cppcheck; shellcheck where it is installed).
 lint:
 	cppcheck --quiet --error-exitcode=1 --std=c17 --enable=warning,performance,portability --inline-suppr -j$(JOBS) \
-		--suppressions-list=scripts/cppcheck-suppressions -D_GNU_SOURCE -DBILLIARD_CONFIG_DIR='""' -Isrc src tests bench fuzz
+		--library=scripts/cppcheck.cfg --suppressions-list=scripts/cppcheck-suppressions -D_GNU_SOURCE -DBILLIARD_CONFIG_DIR='""' -Isrc src tests bench fuzz
 	@if command -v shellcheck >/dev/null; then shellcheck $$(grep -lE '^#!/bin/(ba)?sh' scripts/* .ci/*) tests/*.sh; \
 		else echo "lint: shellcheck is not installed, scripts are not checked"; fi
 

@@ -8,6 +8,7 @@
 
 static const double SETTLE_MAX = 0.006;		/* m a ball may be moved to take camera errors out of a layout */
 static const double NEW_LAYOUT = 0.003;		/* m a ball must lie elsewhere for a new proposal */
+static const int64_t UTIME_MAX = (int64_t)1 << 53;	/* us, the year 2255: a later frame is a malformed one */
 
 void controller_init(struct controller *c, const struct config *config)
 {
@@ -30,10 +31,13 @@ static void note(struct controller *c, const char *text)
 	snprintf(c->note, sizeof c->note, "%s", text);
 }
 
+/* Rings only where balls are known to rest. */
 static void draw_nothing(struct controller *c, bool with_note)
 {
+	bool at_rest = c->fsm.state == FSM_PLANNING || c->fsm.state == FSM_SHOWING;
+	snprintf(c->drawn_note, sizeof c->drawn_note, "%s", with_note ? c->note : "");
 	draw_clear(&c->draw);
-	draw_idle(&c->draw, &c->config->table, c->seen.ball, c->seen.count, with_note ? c->note : "", &c->options);
+	draw_idle(&c->draw, &c->config->table, c->seen.ball, at_rest ? c->seen.count : 0, c->drawn_note, &c->options);
 	c->draw.plan_id = 0;
 	c->animation = (billiard_animation_t){0};
 	c->output.draw = c->output.animation = true;
@@ -45,12 +49,20 @@ static void draw_shown(struct controller *c)
 	draw_proposal(&c->draw, &c->config->table, &c->plan, c->entry, c->shot, &c->options);
 	c->draw.plan_id = c->plan.request_id;
 	c->output.draw = true;
-	if (!c->animate)
+}
+
+/* A better answer with the same first shot lets the animation go on. */
+static void animate_shown(struct controller *c, double now)
+{
+	billiard_animation_t animation;
+	plan_message_animation(&animation, &c->plan, c->entry, c->shot);
+	if (!c->animate || plan_message_same_motion(&animation, &c->animation))
 		return;
-	plan_message_animation(&c->animation, &c->plan, c->entry, c->shot);
-	c->animation.rate = c->config->infinity.animation_rate;
-	c->animation.pause = c->config->infinity.animation_pause;
-	c->animation.ball_radius = c->config->table.ball_radius;
+	animation.rate = c->config->infinity.animation_rate;
+	animation.pause = c->config->infinity.animation_pause;
+	animation.ball_radius = c->config->table.ball_radius;
+	c->animation = animation;
+	c->animation_since = now;
 	c->output.animation = true;
 }
 
@@ -79,7 +91,7 @@ static void request(struct controller *c)
 		c->rules = ball_on(c);
 	c->asked = c->seen;
 	c->has_asked = true;
-	c->has_plan = false;
+	c->has_plan = c->was_cancelled = false;
 	c->entry = c->shot = 0;
 	billiard_plan_request_t *r = &c->request;
 	/* The frame's time as id: larger than all former ones, also after a restart, and the same in a replay. */
@@ -111,12 +123,21 @@ static void request(struct controller *c)
 	c->output.request = true;
 }
 
+/* The planner lost the request, or somebody else had it ended: then it knows the id as done, and only a new one helps. */
+static void repeat(struct controller *c)
+{
+	if (c->was_cancelled)
+		request(c);
+	else
+		c->output.request = true;
+}
+
 static int wrap(int value, int count)
 {
 	return count > 0 ? (value % count + count) % count : 0;
 }
 
-static void perform(struct controller *c, unsigned actions)
+static void perform(struct controller *c, unsigned actions, double now)
 {
 	if (actions & FSM_DO_CANCEL) {
 		c->output.cancel = true;
@@ -127,20 +148,22 @@ static void perform(struct controller *c, unsigned actions)
 	if (actions & FSM_DO_REQUEST)
 		request(c);
 	if (actions & FSM_DO_REPEAT)
-		c->output.request = true;
+		repeat(c);
 	if (actions & FSM_DO_NEXT)
 		c->entry = wrap(c->entry + 1, c->plan.entry_count);
 	if (actions & FSM_DO_PREVIOUS)
 		c->entry = wrap(c->entry - 1, c->plan.entry_count);
-	if ((actions & FSM_DO_SHOW) && c->has_plan)
+	if ((actions & FSM_DO_SHOW) && c->has_plan) {
 		draw_shown(c);
+		animate_shown(c, now);
+	}
 	if (actions & FSM_DO_NOTE)
 		draw_nothing(c, true);
 }
 
 static void event(struct controller *c, enum fsm_event e, double now)
 {
-	perform(c, fsm_step(&c->fsm, e, now));
+	perform(c, fsm_step(&c->fsm, e, now), now);
 }
 
 /* ---- what is seen --------------------------------------------------------------------------------------------------- */
@@ -202,7 +225,7 @@ bool controller_state(struct controller *c, const billiard_table_state_t *state,
 {
 	struct layout layout;
 	/* A clock that was set back, or another log: begin anew after two seconds' worth of doubt. */
-	if (state->utime <= c->last_frame && c->last_frame - state->utime < 2000000)
+	if (state->utime < 0 || state->utime > UTIME_MAX || (state->utime <= c->last_frame && c->last_frame - state->utime < 2000000))
 		return false;
 	if (!layout_from_message(&layout, state))
 		return false;
@@ -220,6 +243,8 @@ bool controller_state(struct controller *c, const billiard_table_state_t *state,
 		c->seen = layout;
 	}
 	on_verdict(c, verdict, now);
+	if (verdict == STABILITY_LOST && c->fsm.state == FSM_BLIND && strcmp(c->note, c->drawn_note) != 0)
+		draw_nothing(c, true);
 	return true;
 }
 
@@ -227,9 +252,11 @@ bool controller_state(struct controller *c, const billiard_table_state_t *state,
 
 bool controller_plan(struct controller *c, const billiard_plan_t *plan, double now)
 {
+	bool wanted = c->fsm.state == FSM_PLANNING || c->fsm.state == FSM_SHOWING;
 	if (plan->request_id != c->request.id || !plan_message_check(plan, &c->config->table))
 		return false;
-	if (plan->status == PLAN_MESSAGE_CANCELLED)
+	c->was_cancelled = plan->status == PLAN_MESSAGE_CANCELLED;
+	if (c->was_cancelled || !wanted)
 		return true;
 	if (plan->status != PLAN_MESSAGE_OK) {
 		bus_text(c->note, sizeof c->note, plan->reason, sizeof plan->reason);
@@ -254,27 +281,36 @@ static bool toggle(struct controller *c, bool *what)
 	if (c->fsm.state == FSM_SHOWING && c->has_plan)
 		draw_shown(c);
 	else
-		draw_nothing(c, c->fsm.state == FSM_BLIND);
+		draw_nothing(c, c->fsm.state == FSM_BLIND || c->fsm.state == FSM_SHOWING);
 	return true;
 }
 
-static bool animation_control(struct controller *c, const char *name, const char *argument)
+/* Lets the animation stand or run on from another place. */
+static void move_animation(struct controller *c, double position, bool run, double now)
 {
+	c->animation.position = fmin(fmax(position, 0), plan_message_animation_length(&c->animation));
+	c->animation.run = run;
+	c->animation_since = now;
+}
+
+static bool animation_control(struct controller *c, const char *name, const char *argument, double now)
+{
+	double at = plan_message_animation_time(&c->animation, now - c->animation_since);
+	bool shown = c->fsm.state == FSM_SHOWING && c->has_plan;
 	if (strcmp(name, "animation") == 0) {
 		c->animate = !c->animate;
-		c->animation.keyframe_count = c->animate ? c->animation.keyframe_count : 0;
-		if (c->animate && c->fsm.state == FSM_SHOWING && c->has_plan)
-			draw_shown(c);
+		c->animation.keyframe_count = 0;
+		if (shown)
+			animate_shown(c, now);
 	} else if (strcmp(name, "animation-stop") == 0) {
-		c->animation.run = !c->animation.run;
+		move_animation(c, at, !c->animation.run, now);
 	} else if (strcmp(name, "animation-seek") == 0) {
 		double seconds = 0;
 		if (sscanf(argument, "%lf", &seconds) != 1 || !isfinite(seconds))
 			return false;
-		c->animation.position = fmax(0, c->animation.position + seconds);
+		move_animation(c, at + seconds, c->animation.run, now);
 	} else if (strcmp(name, "animation-restart") == 0) {
-		c->animation.position = 0;
-		c->animation.run = 1;
+		move_animation(c, 0, true, now);
 	} else {
 		return false;
 	}
@@ -313,7 +349,7 @@ bool controller_command(struct controller *c, const billiard_command_t *command,
 	if (strcmp(name, "info") == 0)
 		return toggle(c, &c->options.info);
 	/* What is not known here may be another program's. */
-	return strncmp(name, "animation", 9) != 0 || animation_control(c, name, argument);
+	return strncmp(name, "animation", 9) != 0 || animation_control(c, name, argument, now);
 }
 
 void controller_tick(struct controller *c, double now)

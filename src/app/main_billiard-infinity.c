@@ -28,7 +28,6 @@ static void send_draw(struct infinity *p)
 
 static void send_animation(struct infinity *p)
 {
-	p->controller.animation.utime = process_utime();
 	bus_publish(p->process.bus, "ANIMATION", &bus_animation, &p->controller.animation);
 }
 
@@ -56,8 +55,10 @@ static void flush(struct infinity *p)
 	}
 	if (out.draw)
 		send_draw(p);
-	if (out.animation)
+	if (out.animation) {
+		p->controller.animation.utime = process_utime();
 		send_animation(p);
+	}
 	process_state(&p->process, "%s", fsm_state_name(p->controller.fsm.state));
 }
 

@@ -1,9 +1,9 @@
 /* billiard-projector: draws what DRAW and ANIMATION say, in table coordinates, and knows nothing of snooker. */
-#include <math.h>
 #include <stdio.h>
 #include <string.h>
 
 #include "app/draw.h"
+#include "app/plan_message.h"
 #include "app/process.h"
 #include "app/render.h"
 #include "app/window.h"
@@ -23,53 +23,6 @@ struct projector {
 	double work;			/* s, of the last picture */
 };
 
-/* ---- animation ------------------------------------------------------------------------------------------------------ */
-
-static double animation_length(const billiard_animation_t *a)
-{
-	double end = 0;
-	for (int i = 0; i < a->keyframe_count; i++)
-		end = fmax(end, a->keyframes[i].end);
-	return end;
-}
-
-/* Where the animation stands: it runs to the end, pauses, begins again. */
-static double animation_time(const struct projector *p)
-{
-	const billiard_animation_t *a = &p->animation;
-	if (!a->run)
-		return a->position;
-	double length = animation_length(a) + a->pause;
-	double t = a->position + a->rate * (process_seconds(NULL) - p->animation_begin);
-	return length > 0 ? fmin(fmod(t, length), length - a->pause) : 0;
-}
-
-static bool animation_ok(const billiard_animation_t *a)
-{
-	if (a->keyframe_count < 0 || a->keyframe_count > (int)(sizeof a->keyframes / sizeof a->keyframes[0]) || a->ball_count < 0 ||
-	    a->ball_count > BALL_MAX || !(a->rate >= 0 && a->rate <= 100) || !(a->pause >= 0 && a->pause <= 3600) ||
-	    !(a->position >= 0 && a->position <= 3600) || !(a->ball_radius >= 0 && a->ball_radius < 1))
-		return false;
-	for (int i = 0; i < a->ball_count; i++)
-		if (a->colours[i] < 0 || a->colours[i] >= COLOUR_COUNT)
-			return false;
-	for (int i = 0; i < a->keyframe_count; i++) {
-		const billiard_keyframe_t *k = &a->keyframes[i];
-		if (k->ball < 0 || k->ball >= a->ball_count || !(k->begin >= 0 && k->begin <= k->end && k->end < 3600) || !isfinite(k->x) ||
-		    !isfinite(k->y) || !isfinite(k->vx) || !isfinite(k->vy) || !isfinite(k->ax) || !isfinite(k->ay))
-			return false;
-	}
-	return true;
-}
-
-/* Repeated each second: the same again must not start it anew. */
-static bool same_animation(const billiard_animation_t *a, const billiard_animation_t *b)
-{
-	return a->plan_id == b->plan_id && a->run == b->run && a->position == b->position && a->rate == b->rate &&
-	       a->keyframe_count == b->keyframe_count &&
-	       memcmp(a->keyframes, b->keyframes, (size_t)a->keyframe_count * sizeof a->keyframes[0]) == 0;
-}
-
 /* ---- messages ------------------------------------------------------------------------------------------------------- */
 
 static bool on_draw(void *context, const void *message)
@@ -87,9 +40,10 @@ static bool on_animation(void *context, const void *message)
 {
 	struct projector *p = context;
 	const billiard_animation_t *animation = message;
-	if (!animation_ok(animation))
+	if (!plan_message_animation_check(animation))
 		return false;
-	if (same_animation(&p->animation, animation))
+	/* Repeated each second: the same again must not start it anew. */
+	if (animation->utime == p->animation.utime && plan_message_same_motion(animation, &p->animation))
 		return true;
 	p->animation = *animation;
 	p->animation_begin = process_seconds(NULL);
@@ -143,7 +97,8 @@ static int on_frame(sd_event_source *source, uint64_t usec, void *context)
 	if (!p->window || !(p->dirty || (moving && p->animation.run)))
 		return 0;
 	double begin = process_seconds(NULL);
-	render_draw(p->render, &p->list, moving ? &p->animation : NULL, animation_time(p));
+	render_draw(p->render, &p->list, moving ? &p->animation : NULL,
+		    plan_message_animation_time(&p->animation, begin - p->animation_begin));
 	int width, height, stride;
 	const uint32_t *pixels = render_pixels(p->render, &width, &height, &stride);
 	window_show(p->window, pixels, stride);

@@ -233,16 +233,25 @@ void plan_message_fill(billiard_plan_t *out, const struct plan_result *result, c
 
 /* ---- checks --------------------------------------------------------------------------------------------------------- */
 
+/* What no table exceeds: m, m/s or m/s^2, s. Drawing then needs no care for overflow. */
+static const double PLACE_MAX = 100, SPEED_MAX = 1000, TIME_MAX = 3600;
+
 static bool in(long value, long low, long high)
 {
 	return value >= low && value <= high;
 }
 
+static bool within(double value, double limit)
+{
+	return fabs(value) <= limit;	/* false for NaN */
+}
+
 static bool shot_ok(const billiard_plan_t *plan, const billiard_plan_shot_t *shot, const struct table *table)
 {
 	bool ok = in(shot->target, -1, plan->ball_count - 1) && in(shot->pocket, -1, table->pocket_count - 1) &&
-		  in(shot->chain_count, 0, 4) && in(shot->potted_count, 0, 8) && isfinite(shot->angle) && isfinite(shot->speed) &&
-		  isfinite(shot->side) && isfinite(shot->follow) && isfinite(shot->elevation) && isfinite(shot->cost) &&
+		  in(shot->chain_count, 0, 4) && in(shot->potted_count, 0, 8) && within(shot->angle, 100) && within(shot->speed, 100) &&
+		  within(shot->side, 1) && within(shot->follow, 1) && within(shot->elevation, 2) && isfinite(shot->cost) &&
+		  isfinite(shot->tolerance_angle) && isfinite(shot->tolerance_speed) && within(shot->success, 1) &&
 		  in(shot->keyframe_first, 0, plan->keyframe_count) &&
 		  in(shot->keyframe_count, 0, plan->keyframe_count - shot->keyframe_first);
 	for (int i = 0; ok && i < shot->chain_count; i++)
@@ -250,20 +259,20 @@ static bool shot_ok(const billiard_plan_t *plan, const billiard_plan_shot_t *sho
 	for (int i = 0; ok && i < shot->potted_count; i++)
 		ok = in(shot->potted_ball[i], 0, plan->ball_count - 1) && in(shot->potted_pocket[i], 0, table->pocket_count - 1);
 	for (int i = 0; ok && i < plan->ball_count; i++)
-		ok = isfinite(shot->start_x[i]) && isfinite(shot->start_y[i]);
+		ok = within(shot->start_x[i], PLACE_MAX) && within(shot->start_y[i], PLACE_MAX);
 	return ok;
 }
 
 static bool keyframe_ok(const billiard_keyframe_t *k, int ball_count)
 {
 	return in(k->ball, 0, ball_count - 1) && in(k->phase, 0, BALL_POTTED) && in(k->event, 0, EVENT_KIND_COUNT - 1) &&
-	       isfinite(k->begin) && isfinite(k->end) && k->begin <= k->end && isfinite(k->x) && isfinite(k->y) && isfinite(k->vx) &&
-	       isfinite(k->vy) && isfinite(k->ax) && isfinite(k->ay);
+	       k->begin >= 0 && k->begin <= k->end && k->end <= TIME_MAX && within(k->x, PLACE_MAX) && within(k->y, PLACE_MAX) &&
+	       within(k->vx, SPEED_MAX) && within(k->vy, SPEED_MAX) && within(k->ax, SPEED_MAX) && within(k->ay, SPEED_MAX);
 }
 
 bool plan_message_check(const billiard_plan_t *plan, const struct table *table)
 {
-	bool ok = in(plan->status, PLAN_MESSAGE_OK, PLAN_MESSAGE_REFUSED) && in(plan->ball_count, 0, BALL_MAX) &&
+	bool ok = plan->request_id > 0 && in(plan->status, PLAN_MESSAGE_OK, PLAN_MESSAGE_REFUSED) && in(plan->ball_count, 0, BALL_MAX) &&
 		  in(plan->entry_count, 0, PLAN_MESSAGE_ENTRIES) && in(plan->keyframe_count, 0, PLAN_MESSAGE_KEYFRAMES) &&
 		  (plan->status != PLAN_MESSAGE_OK || plan->entry_count > 0);
 	for (int i = 0; ok && i < plan->ball_count; i++)
@@ -272,7 +281,7 @@ bool plan_message_check(const billiard_plan_t *plan, const struct table *table)
 		ok = keyframe_ok(&plan->keyframes[i], plan->ball_count);
 	for (int i = 0; ok && i < plan->entry_count; i++) {
 		const billiard_plan_entry_t *entry = &plan->entries[i];
-		ok = in(entry->shot_count, 1, PLAN_MESSAGE_SHOTS);
+		ok = in(entry->shot_count, 1, PLAN_MESSAGE_SHOTS) && isfinite(entry->cost);
 		for (int k = 0; ok && k < entry->shot_count; k++)
 			ok = shot_ok(plan, &entry->shots[k], table);
 	}
@@ -286,4 +295,38 @@ void plan_message_animation(billiard_animation_t *out, const billiard_plan_t *pl
 	memcpy(out->colours, plan->colours, sizeof out->colours);
 	out->keyframe_count = s->keyframe_count;
 	memcpy(out->keyframes, plan->keyframes + s->keyframe_first, (size_t)s->keyframe_count * sizeof out->keyframes[0]);
+}
+
+bool plan_message_same_motion(const billiard_animation_t *a, const billiard_animation_t *b)
+{
+	return a->plan_id == b->plan_id && a->keyframe_count == b->keyframe_count &&
+	       memcmp(a->keyframes, b->keyframes, (size_t)a->keyframe_count * sizeof a->keyframes[0]) == 0;
+}
+
+double plan_message_animation_length(const billiard_animation_t *animation)
+{
+	double end = 0;
+	for (int i = 0; i < animation->keyframe_count; i++)
+		end = fmax(end, animation->keyframes[i].end);
+	return end;
+}
+
+double plan_message_animation_time(const billiard_animation_t *animation, double elapsed)
+{
+	if (!animation->run)
+		return animation->position;
+	double length = plan_message_animation_length(animation), period = length + animation->pause;
+	return period > 0 ? fmin(fmod(animation->position + animation->rate * elapsed, period), length) : 0;
+}
+
+bool plan_message_animation_check(const billiard_animation_t *a)
+{
+	bool ok = in(a->keyframe_count, 0, PLAN_MESSAGE_KEYFRAMES) && in(a->ball_count, 0, BALL_MAX) && a->rate >= 0 && a->rate <= 100 &&
+		  a->pause >= 0 && a->pause <= TIME_MAX && a->position >= 0 && a->position <= TIME_MAX && a->ball_radius >= 0 &&
+		  a->ball_radius < 1;
+	for (int i = 0; ok && i < a->ball_count; i++)
+		ok = in(a->colours[i], 0, COLOUR_COUNT - 1);
+	for (int i = 0; ok && i < a->keyframe_count; i++)
+		ok = keyframe_ok(&a->keyframes[i], a->ball_count);
+	return ok;
 }

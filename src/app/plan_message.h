@@ -36,5 +36,13 @@ bool plan_message_check(const billiard_plan_t *plan, const struct table *table);
 
 /* Animation of one shot of one entry, which must have passed plan_message_check(). */
 void plan_message_animation(billiard_animation_t *out, const billiard_plan_t *plan, int entry, int shot);
+/* True when both move the same balls in the same way. */
+bool plan_message_same_motion(const billiard_animation_t *a, const billiard_animation_t *b);
+/* s from the strike until all balls rest. */
+double plan_message_animation_length(const billiard_animation_t *animation);
+/* s since the strike at which the animation stands, elapsed s after it was at its position: it runs to the end, pauses, begins again. */
+double plan_message_animation_time(const billiard_animation_t *animation, double elapsed);
+/* True when counts and indices are in range and all numbers finite: to be called on every animation from the wire. */
+bool plan_message_animation_check(const billiard_animation_t *animation);
 
 #endif
