@@ -20,8 +20,7 @@ struct options {
 
 /* Balls of known colour, gathered over all photographs. */
 struct samples {
-	struct colour_feature *feature;
-	enum ball_colour *colour;
+	struct colour_sample *sample;
 	int count, capacity;
 };
 
@@ -78,21 +77,17 @@ static int parse(struct options *options, int argc, char **argv)
 	return CMD_OK;
 }
 
-static int remember(struct samples *s, const struct colour_feature *feature, enum ball_colour colour)
+static int remember(struct samples *s, const struct colour_sample *sample)
 {
 	if (s->count == s->capacity) {
 		int capacity = s->capacity > 0 ? 2 * s->capacity : 256;
-		struct colour_feature *f = realloc(s->feature, sizeof *f * (size_t)capacity);
-		if (f)
-			s->feature = f;
-		enum ball_colour *c = f ? realloc(s->colour, sizeof *c * (size_t)capacity) : NULL;
-		if (!c)
+		struct colour_sample *grown = realloc(s->sample, sizeof *grown * (size_t)capacity);
+		if (!grown)
 			return -ENOMEM;
-		s->colour = c;
+		s->sample = grown;
 		s->capacity = capacity;
 	}
-	s->feature[s->count] = *feature;
-	s->colour[s->count++] = colour;
+	s->sample[s->count++] = *sample;
 	return 0;
 }
 
@@ -185,7 +180,7 @@ static int label_balls(const struct learner *l, const char *path, enum ball_colo
 static int learn_image(struct learner *l, const char *path)
 {
 	char err[CMD_ERROR_SIZE] = "";
-	struct colour_feature feature[VISION_BALL_MAX];
+	struct colour_sample sample[VISION_BALL_MAX];
 	enum ball_colour colour[VISION_BALL_MAX];
 	if (image_read(path, &l->buffer, err, sizeof err) < 0)
 		return cmd_bad_input("%s", err);
@@ -196,10 +191,12 @@ static int learn_image(struct learner *l, const char *path)
 	int status = label_balls(l, path, colour);
 	if (status != CMD_OK)
 		return status;
-	vision_features(l->vision, feature);
-	for (int b = 0; b < l->result.ball_count; b++)
-		if (colour[b] != COLOUR_UNKNOWN && remember(&l->samples, &feature[b], colour[b]) < 0)
+	vision_samples(l->vision, sample);
+	for (int b = 0; b < l->result.ball_count; b++) {
+		sample[b].colour = colour[b];
+		if (colour[b] != COLOUR_UNKNOWN && remember(&l->samples, &sample[b]) < 0)
 			return cmd_bad_input("out of memory");
+	}
 	return CMD_OK;
 }
 
@@ -229,7 +226,7 @@ static int finish(const struct learner *l, const char *path)
 	struct colour_model model;
 	if (l->samples.count == 0)
 		return cmd_bad_input("no ball of known colour in these images");
-	if (colour_learn(l->samples.feature, l->samples.colour, l->samples.count, &model, err, sizeof err) < 0 ||
+	if (colour_learn(l->samples.sample, l->samples.count, &model, err, sizeof err) < 0 ||
 	    colour_file_write(path, &model, err, sizeof err) < 0)
 		return cmd_bad_input("%s", err);
 	printf("%s: learned from %d balls:", path, l->samples.count);
@@ -257,8 +254,7 @@ int cmd_calibrate(int argc, char **argv)
 	vision_destroy(l->vision);
 	image_buffer_finish(&l->buffer);
 	json_decref(l->labels);
-	free(l->samples.feature);
-	free(l->samples.colour);
+	free(l->samples.sample);
 	free(l);
 	return status;
 }

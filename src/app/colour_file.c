@@ -64,13 +64,26 @@ static int read_numbers(const struct reader *r, const char *class, const char *k
 	return 0;
 }
 
+static int read_number(const struct reader *r, const char *class, const char *key, const json_t *object, double *out)
+{
+	const json_t *v = json_object_get(object, key);
+	if (!json_is_number(v))
+		return complain(r, class, key, "a number is wanted");
+	*out = json_number_value(v);
+	return 0;
+}
+
 static int read_class(const struct reader *r, const char *name, const json_t *object, struct colour_class *out)
 {
 	const json_t *samples = json_object_get(object, "samples"), *rows = json_object_get(object, "covariance");
 	if (!json_is_integer(samples) || json_integer_value(samples) < 1 || json_integer_value(samples) > 1000000000)
 		return complain(r, name, "samples", "a whole number 1..1000000000 is wanted");
 	out->samples = (int)json_integer_value(samples);
-	int rc = read_numbers(r, name, "mean", json_object_get(object, "mean"), out->mean);
+	int rc = read_number(r, name, "scale", object, &out->scale);
+	if (rc == 0)
+		rc = read_number(r, name, "scale_spread", object, &out->scale_spread);
+	if (rc == 0)
+		rc = read_numbers(r, name, "mean", json_object_get(object, "mean"), out->mean);
 	if (rc < 0)
 		return rc;
 	if (!json_is_array(rows) || json_array_size(rows) != COLOUR_FEATURES)
@@ -85,21 +98,21 @@ static int read_class(const struct reader *r, const char *name, const json_t *ob
 
 static int read_model(const struct reader *r, const json_t *root, struct colour_model *out)
 {
-	const json_t *distance = json_object_get(root, "unknown_distance"), *object;
+	const json_t *object;
 	json_t *classes = json_object_get(root, "classes");
 	const char *name;
 	enum ball_colour colour;
 	if (!json_is_object(root))
 		return complain(r, NULL, "file", "a JSON object is wanted");
-	if (!json_is_number(distance))
-		return complain(r, NULL, "unknown_distance", "a number is wanted");
-	out->unknown_distance = json_number_value(distance);
+	int rc = read_number(r, NULL, "unknown_distance", root, &out->unknown_distance);
+	if (rc < 0)
+		return rc;
 	if (!json_is_object(classes))
 		return complain(r, NULL, "classes", "an object with a member per colour is wanted");
 	json_object_foreach(classes, name, object) {
 		if (!ball_colour_from_name(name, &colour) || colour == COLOUR_UNKNOWN)
 			return complain(r, NULL, name, "is no colour");
-		int rc = read_class(r, name, object, &out->class[colour]);
+		rc = read_class(r, name, object, &out->class[colour]);
 		if (rc < 0)
 			return rc;
 	}
@@ -149,6 +162,8 @@ static json_t *class_object(const struct colour_class *class)
 	for (int i = 0; i < COLOUR_FEATURES; i++)
 		json_array_append_new(rows, numbers(class->covariance[i]));
 	json_object_set_new(object, "samples", json_integer(class->samples));
+	json_object_set_new(object, "scale", json_real(class->scale));
+	json_object_set_new(object, "scale_spread", json_real(class->scale_spread));
 	json_object_set_new(object, "mean", numbers(class->mean));
 	json_object_set_new(object, "covariance", rows);
 	return object;

@@ -14,6 +14,7 @@ static const double FLOOR = 6;			/* levels added before a logarithm: noise of bl
 /* Spread added to every class, as standard deviations: light that differs from what was learned. */
 static const double SPREAD[F] = {0.10, 0.10, 0.10, 0.10, 0.10, 0.05};
 static const double POOLED_SHARE = 0.3;		/* of the classes' common covariance in each class' own */
+static const double SCALE_FLOOR = 0.01;	/* least spread of the apparent radius */
 static const double UNKNOWN_DISTANCE = 9;
 
 /* ---- measuring ------------------------------------------------------------------------------------------------------- */
@@ -77,24 +78,51 @@ struct colour_feature colour_measure(const struct image *frame, const struct out
 
 /* ---- learning -------------------------------------------------------------------------------------------------------- */
 
-static void class_moments(const struct colour_feature *feature, const enum ball_colour *colour, int count, int class,
-			  struct colour_class *out)
+/* Mean and spread of the apparent radius; fits that went wrong are left out. */
+static void class_scale(const struct colour_sample *sample, int count, int class, struct colour_class *out)
+{
+	double mean = 1, reach = 0.15;
+	for (int round = 0; round < 4; round++) {
+		double sum = 0, sum2 = 0, n = 0;
+		for (int i = 0; i < count; i++)
+			if ((int)sample[i].colour == class && fabs(sample[i].scale - mean) < reach) {
+				double d = sample[i].scale - mean;
+				sum += d;
+				sum2 += d * d;
+				n++;
+			}
+		if (n < CLASS_SAMPLES_MIN)
+			break;
+		double spread = sqrt(fmax(0, sum2 / n - sum / n * sum / n) + SCALE_FLOOR * SCALE_FLOOR);
+		mean += sum / n;
+		reach = 2.5 * spread;
+		out->scale_spread = spread;
+	}
+	out->scale = mean;
+	if (!(out->scale_spread > 0))
+		out->scale_spread = reach;
+}
+
+static void class_moments(const struct colour_sample *sample, int count, int class, struct colour_class *out)
 {
 	*out = (struct colour_class){0};
 	for (int i = 0; i < count; i++)
-		if ((int)colour[i] == class) {
+		if ((int)sample[i].colour == class) {
 			out->samples++;
 			for (int a = 0; a < F; a++)
-				out->mean[a] += feature[i].v[a];
+				out->mean[a] += sample[i].feature.v[a];
 		}
-	for (int a = 0; a < F && out->samples > 0; a++)
+	if (out->samples == 0)
+		return;
+	class_scale(sample, count, class, out);
+	for (int a = 0; a < F; a++)
 		out->mean[a] /= out->samples;
 	for (int i = 0; i < count; i++)
-		if ((int)colour[i] == class)
+		if ((int)sample[i].colour == class)
 			for (int a = 0; a < F; a++)
 				for (int b = 0; b < F; b++)
-					out->covariance[a][b] += (feature[i].v[a] - out->mean[a]) *
-								 (feature[i].v[b] - out->mean[b]) / out->samples;
+					out->covariance[a][b] += (sample[i].feature.v[a] - out->mean[a]) *
+								 (sample[i].feature.v[b] - out->mean[b]) / out->samples;
 }
 
 /* Mean of the classes' covariances, each counted once: reds are many. */
@@ -113,13 +141,12 @@ static void pool(const struct colour_model *model, double pooled[F][F])
 			pooled[a][b] /= classes;
 }
 
-int colour_learn(const struct colour_feature *feature, const enum ball_colour *colour, int count,
-		 struct colour_model *out, char *err, size_t err_size)
+int colour_learn(const struct colour_sample *sample, int count, struct colour_model *out, char *err, size_t err_size)
 {
 	struct colour_model model = {.unknown_distance = UNKNOWN_DISTANCE};
 	double pooled[F][F];
 	for (int k = 0; k < COLOUR_CLASSES; k++) {
-		class_moments(feature, colour, count, k, &model.class[k]);
+		class_moments(sample, count, k, &model.class[k]);
 		if (model.class[k].samples > 0 && model.class[k].samples < CLASS_SAMPLES_MIN)
 			return vision_fail(-EINVAL, err, err_size, "only %d samples of %s, at least %d are needed",
 					   model.class[k].samples, ball_colour_name((enum ball_colour)k), CLASS_SAMPLES_MIN);
@@ -184,6 +211,10 @@ static int check_class(const struct colour_class *class, const char *name, char 
 			return vision_fail(-EINVAL, err, err_size, "%s: covariance[%d][%d] = %g, at least 1e-9", name, a, a,
 					   class->covariance[a][a]);
 	}
+	if (!(class->scale >= 0.5 && class->scale <= 1.5))
+		return vision_fail(-EINVAL, err, err_size, "%s: scale = %g, allowed 0.5..1.5", name, class->scale);
+	if (!(class->scale_spread > 0 && class->scale_spread <= 1))
+		return vision_fail(-EINVAL, err, err_size, "%s: scale_spread = %g, allowed 0..1", name, class->scale_spread);
 	if (!invert(class->covariance, inverse))
 		return vision_fail(-EINVAL, err, err_size, "%s: the covariance is not positive definite", name);
 	return 0;
@@ -212,6 +243,8 @@ struct colour_classifier colour_classifier(const struct colour_model *model)
 		bool inverted = invert(model->class[k].covariance, c.inverse[k]);
 		assert(inverted);
 		(void)inverted;
+		c.scale[k] = model->class[k].scale;
+		c.scale_spread[k] = model->class[k].scale_spread;
 		c.log_norm[k] = -0.5 * log_determinant(model->class[k].covariance);
 	}
 	return c;
@@ -245,6 +278,14 @@ static int best_class(const double likely[COLOUR_COUNT], const bool taken[COLOUR
 		if (!taken[k] && likely[k] > likely[best])
 			best = k;
 	return best;
+}
+
+enum ball_colour colour_likeliest(const struct colour_classifier *classifier, const struct colour_feature *feature)
+{
+	const bool taken[COLOUR_COUNT] = {false};
+	double likely[COLOUR_COUNT];
+	likelihoods(classifier, feature, likely);
+	return (enum ball_colour)best_class(likely, taken);
 }
 
 /* What the ball would lose by not getting this class. */

@@ -24,6 +24,7 @@ struct colour_class {
 	int samples;
 	double mean[COLOUR_FEATURES];
 	double covariance[COLOUR_FEATURES][COLOUR_FEATURES];	/* symmetric, positive definite */
+	double scale, scale_spread;	/* apparent radius over the true one, and its standard deviation; 0.5..1.5, > 0 */
 };
 
 /* Plain numbers, filled by the application (app/colour_file.h reads and writes the file). */
@@ -38,9 +39,15 @@ int colour_model_check(const struct colour_model *model, char *err, size_t err_s
 /* Looks at a ball; cloth: BGR of the cloth around it. */
 struct colour_feature colour_measure(const struct image *frame, const struct outline *outline, const float cloth[3]);
 
+/* A ball of known colour. */
+struct colour_sample {
+	struct colour_feature feature;
+	double scale;		/* apparent radius over the true one, from its fit */
+	enum ball_colour colour;
+};
+
 /* Learned from balls whose colours are known. 0, or -EINVAL when a class that appears has fewer than 3 samples. */
-int colour_learn(const struct colour_feature *feature, const enum ball_colour *colour, int count,
-		 struct colour_model *out, char *err, size_t err_size);
+int colour_learn(const struct colour_sample *sample, int count, struct colour_model *out, char *err, size_t err_size);
 
 struct colour_verdict {
 	enum ball_colour colour;
@@ -54,9 +61,12 @@ struct colour_classifier {
 	double mean[COLOUR_CLASSES][COLOUR_FEATURES];
 	double inverse[COLOUR_CLASSES][COLOUR_FEATURES][COLOUR_FEATURES];
 	double log_norm[COLOUR_CLASSES];
+	double scale[COLOUR_CLASSES], scale_spread[COLOUR_CLASSES];
 };
 /* model must have passed colour_model_check(). */
 struct colour_classifier colour_classifier(const struct colour_model *model);
+/* The class a ball looks most like on its own, COLOUR_UNKNOWN when none. */
+enum ball_colour colour_likeliest(const struct colour_classifier *classifier, const struct colour_feature *feature);
 /* All balls of a frame at once: at most one is white and one of each of the six colours; none is forced to be there.
  * count at most COLOUR_BALLS_MAX. */
 void colour_assign(const struct colour_classifier *classifier, const struct colour_feature *feature, int count,

@@ -7,12 +7,17 @@ static const double EDGE_SLACK = 0.007;		/* m a fitted centre may lie beyond whe
 static const double MOUTH_INNER = 0.8;		/* of a pocket's radius: nearer to its centre a ball has fallen */
 static const double SUPPORT_SEED = 0.4, SUPPORT_MIN = 0.62;
 static const double COVER_MIN = 0.55;
-static const double SCALE_MIN = 0.885, SCALE_MAX = 1.085;
+static const double SCALE_MIN = 0.86, SCALE_MAX = 1.085;
+static const double USUAL_SCALE = 0.965, USUAL_SPREAD = 0.02;	/* apparent radius of any ball */
+static const double LIKE_SPREAD = 0.004;	/* the same among balls of one look in one frame */
+static const double LIKE_DISTANCE = 0.45;	/* features nearer than that are of one look */
+static const double OVERLAP_DISTANCE = 0.88;	/* the same for finished fits */
+static const double PACK_DISTANCE = 1.08, PACK_COVER = 0.9, SMALL_RADIUS = 7;
 static const double DOUBLE_DISTANCE = 0.75;	/* of a diameter: nearer than that two fits are of one ball */
 
-int detector_init(struct detector *d, const struct table *table, int width, int height)
+int detector_init(struct detector *d, const struct table *table, const struct colour_classifier *colours, int width, int height)
 {
-	*d = (struct detector){.table = table};
+	*d = (struct detector){.table = table, .colours = colours};
 	int rc = scan_init(&d->scan, width, height);
 	if (rc == 0)
 		rc = seeds_init(&d->seeds, width, height);
@@ -43,6 +48,22 @@ bool detect_possible(const struct table *table, vec2 pos)
 		inside = inside || far < 1.6;
 	}
 	return inside;
+}
+
+/* Share of marked small pixels around a full pixel, within reach small radii. */
+static double cover_at(const struct detector *d, vec2 px, double reach)
+{
+	const struct scan *s = &d->scan;
+	vec2 mid = scan_from_full(s, px);
+	int r = (int)(reach * SMALL_RADIUS), in = 0, marked = 0;
+	for (int y = (int)mid.y - r; y <= (int)mid.y + r; y++)
+		for (int x = (int)mid.x - r; x <= (int)mid.x + r; x++) {
+			if (x < 0 || y < 0 || x >= s->width || y >= s->height || hypot(x - mid.x, y - mid.y) > r)
+				continue;
+			in++;
+			marked += s->mark[y * s->width + x] >= SCAN_FOREIGN / 2;
+		}
+	return in > 0 ? (double)marked / in : 0;
 }
 
 /* Shares of marked small pixels inside of 0.8 outlines, and between 1.2 and 1.5 of them where no other ball is. */
@@ -105,18 +126,61 @@ static void add(struct detector *d, const struct candidate *c)
 		d->candidate[d->count++] = *c;
 }
 
-static void try_seed(struct detector *d, const struct fit_view *view, const struct seed *seed)
+static void try_place(struct detector *d, const struct fit_view *view, vec2 px)
 {
-	struct candidate c = {.fit = {.scale = 1}, .cover = seed->cover};
-	if (!camera_unproject(view->camera, seed->px, view->radius, &c.fit.pos))
+	struct candidate c = {
+		.fit = {.scale = USUAL_SCALE, .expected_scale = USUAL_SCALE, .scale_spread = USUAL_SPREAD},
+		.cover = 1,
+	};
+	if (!camera_unproject(view->camera, px, view->radius, &c.fit.pos))
 		return;
+	scan_cloth_at(&d->scan, px, c.fit.cloth);
 	bool fitted = fit_refine(view, &c.fit, 2);
 	if (!fitted || c.fit.support < SUPPORT_SEED)
 		refuse(d, &c, REFUSED_FIT);
 	else if (!detect_possible(d->table, c.fit.pos))
 		refuse(d, &c, REFUSED_PLACE);
-	else
+	else {
+		look_around(d, &c, false);
 		add(d, &c);
+	}
+}
+
+static void know_neighbours(const struct detector *d, struct fit_view *view, struct fit other[DETECT_MAX])
+{
+	for (int i = 0; i < d->count; i++)
+		other[i] = d->candidate[i].fit;
+	view->other = other;
+	view->other_count = d->count;
+}
+
+static bool is_vacant(const struct detector *d, vec2 pos)
+{
+	for (int i = 0; i < d->count; i++)
+		if (vec2_dist(d->candidate[i].fit.pos, pos) < OVERLAP_DISTANCE * 2 * d->table->ball_radius)
+			return false;
+	return detect_possible(d->table, pos);
+}
+
+/* Balls inside a pack show little rim to vote with: one may touch any two that touch each other. */
+static void try_packed(struct detector *d, struct fit_view *view)
+{
+	struct fit other[DETECT_MAX];
+	double diameter = 2 * d->table->ball_radius;
+	know_neighbours(d, view, other);
+	for (int i = 0; i < d->count; i++)
+		for (int j = 0; j < i; j++) {
+			vec2 a = d->candidate[i].fit.pos, way = vec2_sub(d->candidate[j].fit.pos, a), px;
+			if (vec2_norm(way) > PACK_DISTANCE * diameter)
+				continue;
+			for (int side = -1; side <= 1; side += 2) {
+				vec2 pos = vec2_madd(vec2_madd(a, 0.5, way), side * 0.8660254, vec2_perp(way));
+				if (is_vacant(d, pos) && camera_project(view->camera, pos, view->radius, &px) &&
+				    cover_at(d, px, 0.8) > PACK_COVER)
+					try_place(d, view, px);
+			}
+		}
+	view->other_count = 0;
 }
 
 static enum refusal judge(const struct detector *d, const struct candidate *c)
@@ -132,21 +196,66 @@ static enum refusal judge(const struct detector *d, const struct candidate *c)
 	return REFUSED_NOT;
 }
 
-/* Fits each again knowing its neighbours, then judges. */
-static void settle(struct detector *d, struct fit_view *view)
+static bool is_clear(const struct candidate *c)
+{
+	return c->fit.rays >= OUTLINE_POINTS * 3 / 4 && c->fit.support > 0.9;
+}
+
+static double unlike(const struct candidate *a, const struct candidate *b)
+{
+	double sum = 0;
+	for (int i = 0; i < COLOUR_FEATURES; i++)
+		sum += (a->look.v[i] - b->look.v[i]) * (a->look.v[i] - b->look.v[i]);
+	return sqrt(sum);
+}
+
+/* Balls that look the same have the same apparent radius: whole rims tell it to those that are half hidden. */
+static void expect_scales(struct detector *d)
+{
+	for (int i = 0; i < d->count; i++) {
+		double like[DETECT_MAX];
+		int n = 0;
+		for (int j = 0; j < d->count; j++) {
+			const struct candidate *o = &d->candidate[j];
+			if (!is_clear(o) || unlike(&d->candidate[i], o) > LIKE_DISTANCE)
+				continue;
+			int at = n++;
+			for (; at > 0 && like[at - 1] > o->fit.scale; at--)
+				like[at] = like[at - 1];
+			like[at] = o->fit.scale;
+		}
+		struct fit *fit = &d->candidate[i].fit;
+		enum ball_colour class = d->colours ? colour_likeliest(d->colours, &d->candidate[i].look) : COLOUR_UNKNOWN;
+		bool known = class != COLOUR_UNKNOWN;
+		fit->expected_scale = n > 1 ? like[n / 2] : known ? d->colours->scale[class] : USUAL_SCALE;
+		fit->scale_spread = n > 1 ? LIKE_SPREAD : known ? d->colours->scale_spread[class] : USUAL_SPREAD;
+	}
+}
+
+/* Fits all again, each knowing its neighbours. */
+static void fit_together(struct detector *d, struct fit_view *view, int steps)
 {
 	struct fit other[DETECT_MAX];
-	for (int i = 0; i < d->count; i++)
-		other[i] = d->candidate[i].fit;
-	view->other = other;
-	view->other_count = d->count;
+	know_neighbours(d, view, other);
 	for (int i = 0; i < d->count; i++) {
 		struct candidate *c = &d->candidate[i];
-		bool fitted = fit_refine(view, &c->fit, 3);
-		look_around(d, c, true);
-		c->refusal = fitted ? judge(d, c) : REFUSED_FIT;
-		c->confidence = c->fit.support * c->cover;
+		if (!fit_refine(view, &c->fit, steps))
+			c->refusal = REFUSED_FIT;
 	}
+	view->other_count = 0;
+}
+
+static void look(struct detector *d, const struct image *frame)
+{
+	for (int i = 0; i < d->count; i++) {
+		struct candidate *c = &d->candidate[i];
+		scan_cloth_at(&d->scan, c->fit.outline.centre, c->fit.cloth);
+		c->look = colour_measure(frame, &c->fit.outline, c->fit.cloth);
+	}
+}
+
+static void drop_refused(struct detector *d)
+{
 	int kept = 0;
 	for (int i = 0; i < d->count; i++) {
 		if (d->candidate[i].refusal == REFUSED_NOT)
@@ -157,6 +266,41 @@ static void settle(struct detector *d, struct fit_view *view)
 	d->count = kept;
 }
 
+/* Two balls cannot be in one place: of two fits that overlap the worse one goes. */
+static void refuse_overlaps(struct detector *d)
+{
+	double apart = OVERLAP_DISTANCE * 2 * d->table->ball_radius;
+	for (int i = 0; i < d->count; i++)
+		for (int j = 0; j < i; j++) {
+			struct candidate *a = &d->candidate[i], *b = &d->candidate[j];
+			if (a->refusal != REFUSED_NOT || b->refusal != REFUSED_NOT || vec2_dist(a->fit.pos, b->fit.pos) > apart)
+				continue;
+			(worth(a) < worth(b) ? a : b)->refusal = REFUSED_DOUBLE;
+		}
+}
+
+/* Rounds of fitting, since every ball's hidden rim depends on its neighbours; then judgement. */
+static void settle(struct detector *d, struct fit_view *view)
+{
+	for (int round = 0; round < 3; round++) {
+		look(d, view->frame);
+		expect_scales(d);
+		fit_together(d, view, 2);
+		refuse_overlaps(d);
+		drop_refused(d);
+		if (round == 0)
+			try_packed(d, view);
+	}
+	look(d, view->frame);
+	for (int i = 0; i < d->count; i++) {
+		struct candidate *c = &d->candidate[i];
+		look_around(d, c, true);
+		c->refusal = judge(d, c);
+		c->confidence = c->fit.support * c->cover;
+	}
+	drop_refused(d);
+}
+
 bool detector_frame(struct detector *d, const struct image *frame, const struct camera *camera)
 {
 	d->count = d->refused_count = 0;
@@ -165,7 +309,7 @@ bool detector_frame(struct detector *d, const struct image *frame, const struct 
 	seeds_find(&d->seeds, &d->scan, 0, 0, d->scan.width, d->scan.height);
 	struct fit_view view = {frame, camera, d->table->ball_radius, NULL, 0};
 	for (int i = 0; i < d->seeds.count; i++)
-		try_seed(d, &view, &d->seeds.seed[i]);
+		try_place(d, &view, d->seeds.seed[i].px);
 	settle(d, &view);
 	return true;
 }

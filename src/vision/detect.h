@@ -2,6 +2,7 @@
 #ifndef BILLIARD_VISION_DETECT_H
 #define BILLIARD_VISION_DETECT_H
 
+#include "vision/colour.h"
 #include "vision/fit.h"
 #include "vision/scan.h"
 #include "vision/seeds.h"
@@ -13,6 +14,7 @@ enum refusal { REFUSED_NOT, REFUSED_PLACE, REFUSED_FIT, REFUSED_DOUBLE, REFUSED_
 
 struct candidate {
 	struct fit fit;
+	struct colour_feature look;
 	double cover;		/* share of the inside that is not cloth */
 	double ring;		/* share just outside of the rim that is not cloth, neighbours left out */
 	double confidence;	/* 0..1 */
@@ -21,6 +23,7 @@ struct candidate {
 
 struct detector {
 	const struct table *table;
+	const struct colour_classifier *colours;	/* NULL: none learned yet */
 	struct scan scan;
 	struct seeds seeds;
 	int count;
@@ -29,7 +32,8 @@ struct detector {
 	struct candidate refused[SEED_MAX];
 };
 
-int detector_init(struct detector *d, const struct table *table, int width, int height);	/* 0 or -ENOMEM */
+/* Borrows table and colours (NULL is fine). 0 or -ENOMEM. */
+int detector_init(struct detector *d, const struct table *table, const struct colour_classifier *colours, int width, int height);
 void detector_finish(struct detector *d);
 /* Whenever the pose or the frame's size changes. False when the bed is not in view. */
 bool detector_place(struct detector *d, const struct camera *camera);

@@ -9,12 +9,16 @@ enum { REACH_WIDE = 10, REACH_NARROW = 7 };	/* samples to either side of the rim
 static const double STEP_SHARE = 1 / 31.0;	/* distance of samples over the radius: half a pixel at 15.5 px */
 static const double CONTRAST_MIN = 12;		/* levels; a weaker edge is noise */
 static const double CONTRAST_FULL = 40;
-static const double SCALE_PRIOR_PX = 0.35;	/* how far the apparent radius usually lies off, px */
-static const double EDGE_PX = 0.35;		/* how far a single edge usually lies off, px */
+/* How far an edge usually lies off, px; edges side by side err alike, so each counts less than its own noise would say. */
+static const double EDGE_PX = 0.9;
+/* In a crease between balls the own dark limb belongs to the outside: the edge is seen this far inside of the rim. */
+static const double CREASE_PX = -0.5, CREASE_SPREAD_PX = 0.8;
+static const float CREASE_CHROMA2 = 0.16f * 0.16f, CREASE_SHADE = 0.33f;
 static const double SUPPORT_PX = 1.1;		/* an edge this near is where it should be */
 
 struct edge {
 	bool hidden, found;
+	bool crease;		/* the outside is no cloth: a neighbour, its dark foot, a pocket */
 	double offset;		/* px along the normal, outwards */
 	double weight;
 	double contrast;
@@ -50,9 +54,26 @@ static bool half_crossing(const float *v, int count, double *at)
 	return best < 1e8;
 }
 
-/* Colours along the normal, inside first, projected onto the way from the outside's colour to the inside's. */
-static bool profile(const struct image *im, vec2 p, vec2 n, int reach, double step, float *v, double *contrast)
+/* Neither plain, lit nor shaded cloth. */
+static bool is_foreign(const float p[3], const float c[3])
 {
+	float pc = p[0] * c[0] + p[1] * c[1] + p[2] * c[2], cc = c[0] * c[0] + c[1] * c[1] + c[2] * c[2];
+	float pp = p[0] * p[0] + p[1] * p[1] + p[2] * p[2];
+	return pp - pc * pc / cc > CREASE_CHROMA2 * (pp + 0.04f * cc) || pc < CREASE_SHADE * cc;
+}
+
+struct ray {
+	vec2 p, n;		/* px; unit, outwards */
+	int reach;		/* samples to either side */
+	double step;		/* px between them */
+};
+
+/* Colours along the ray, inside first, projected onto the way from the outside's colour to the inside's. */
+static bool profile(const struct image *im, const struct ray *ray, const float cloth[3], float *v, struct edge *edge)
+{
+	vec2 p = ray->p, n = ray->n;
+	int reach = ray->reach;
+	double step = ray->step;
 	int count = 2 * reach + 1, ends = reach / 2;
 	float colour[2 * REACH_WIDE + 1][3], in[3] = {0}, out[3] = {0}, d[3], dd = 0;
 	for (int j = 0; j < count; j++) {
@@ -69,8 +90,9 @@ static bool profile(const struct image *im, vec2 p, vec2 n, int reach, double st
 		d[c] = in[c] - out[c];
 		dd += d[c] * d[c];
 	}
-	*contrast = sqrt((double)dd);
-	if (*contrast < CONTRAST_MIN)
+	edge->crease = is_foreign(out, cloth);
+	edge->contrast = sqrt((double)dd);
+	if (edge->contrast < CONTRAST_MIN)
 		return false;
 	for (int j = 0; j < count; j++)
 		v[j] = ((colour[j][0] - out[0]) * d[0] + (colour[j][1] - out[1]) * d[1] + (colour[j][2] - out[2]) * d[2]) / dd;
@@ -96,10 +118,11 @@ static void find_edges(const struct fit_view *view, struct fit *fit, int reach, 
 	for (int i = 0; i < OUTLINE_POINTS; i++) {
 		vec2 p = fit->outline.point[i], n = fit->outline.normal[i];
 		float v[2 * REACH_WIDE + 1];
+		struct ray ray = {p, n, reach, step};
 		double at;
 		edge[i] = (struct edge){0};
 		edge[i].hidden = hidden_by_neighbour(view, fit, vec2_madd(p, 0.7 * reach * step, n));
-		if (edge[i].hidden || !profile(view->frame, p, n, reach, step, v, &edge[i].contrast) ||
+		if (edge[i].hidden || !profile(view->frame, &ray, fit->cloth, v, &edge[i]) ||
 		    !half_crossing(v, 2 * reach + 1, &at))
 			continue;
 		edge[i].found = true;
@@ -108,45 +131,54 @@ static void find_edges(const struct fit_view *view, struct fit *fit, int reach, 
 	}
 }
 
-/* Tukey's weights about the offsets that the present solution predicts. */
-static void solve_shift(const struct fit *fit, const struct edge edge[OUTLINE_POINTS], double cut, double shift[3])
+enum { SHIFT_X, SHIFT_Y, GROWTH, CREASE, UNKNOWNS };
+
+/* Least squares for shift, growth and the creases' common offset (px), with Tukey's weights. */
+static void solve_shift(const struct fit *fit, const struct edge edge[OUTLINE_POINTS], double cut, double x[UNKNOWNS])
 {
-	double px = fit->outline.radius_px, prior = EDGE_PX / SCALE_PRIOR_PX;
-	memset(shift, 0, 3 * sizeof(*shift));
+	double px = fit->outline.radius_px, unit = px / 15.5;
+	double scale_w = EDGE_PX / (fit->scale_spread * px), crease_w = EDGE_PX / CREASE_SPREAD_PX;
+	memset(x, 0, UNKNOWNS * sizeof(*x));
 	for (int round = 0; round < 3; round++) {
-		double a[9] = {0}, b[3] = {0};
-		a[8] = prior * prior;
-		b[2] = -prior * prior * (fit->scale - 1) * px;
-		a[0] = a[4] = 1e-6;
+		double a[UNKNOWNS * UNKNOWNS] = {0}, b[UNKNOWNS] = {0};
+		a[0] = a[UNKNOWNS + 1] = 1e-6;
+		a[GROWTH * (UNKNOWNS + 1)] = scale_w * scale_w;
+		b[GROWTH] = -scale_w * scale_w * (fit->scale - fit->expected_scale) * px;
+		a[CREASE * (UNKNOWNS + 1)] = crease_w * crease_w;
+		b[CREASE] = crease_w * crease_w * CREASE_PX * unit;
 		for (int i = 0; i < OUTLINE_POINTS; i++) {
 			if (!edge[i].found)
 				continue;
-			double row[3] = {fit->outline.normal[i].x, fit->outline.normal[i].y, 1};
-			double off = edge[i].offset - row[0] * shift[0] - row[1] * shift[1] - shift[2];
+			double row[UNKNOWNS] = {fit->outline.normal[i].x, fit->outline.normal[i].y, 1, edge[i].crease};
+			double off = edge[i].offset;
+			for (int k = 0; k < UNKNOWNS; k++)
+				off -= row[k] * x[k];
 			double q = off / cut, w = edge[i].weight;
 			w *= round == 0 ? 1 / (1 + q * q) : fabs(q) < 1 ? (1 - q * q) * (1 - q * q) : 0;
-			for (int j = 0; j < 3; j++) {
+			for (int j = 0; j < UNKNOWNS; j++) {
 				b[j] += w * row[j] * edge[i].offset;
-				for (int k = 0; k < 3; k++)
-					a[3 * j + k] += w * row[j] * row[k];
+				for (int k = 0; k < UNKNOWNS; k++)
+					a[UNKNOWNS * j + k] += w * row[j] * row[k];
 			}
 		}
-		if (!solve_spd(a, b, 3))
+		if (!solve_spd(a, b, UNKNOWNS))
 			return;
-		memcpy(shift, b, sizeof(b));
+		memcpy(x, b, sizeof(b));
 	}
 }
 
-static void judge(struct fit *fit, const struct edge edge[OUTLINE_POINTS])
+/* crease_px: how far inside edges of creases are seen. */
+static void judge(struct fit *fit, const struct edge edge[OUTLINE_POINTS], double crease_px)
 {
 	double good = 0, sum = 0, contrast = 0;
 	fit->rays = 0;
 	for (int i = 0; i < OUTLINE_POINTS; i++) {
 		fit->rays += !edge[i].hidden;
-		if (!edge[i].found || fabs(edge[i].offset) > SUPPORT_PX * fit->outline.radius_px / 15.5)
+		double off = edge[i].offset - (edge[i].crease ? crease_px : 0);
+		if (!edge[i].found || fabs(off) > SUPPORT_PX * fit->outline.radius_px / 15.5)
 			continue;
 		good++;
-		sum += edge[i].offset * edge[i].offset;
+		sum += off * off;
 		contrast += edge[i].contrast;
 	}
 	fit->support = fit->rays > 0 ? good / fit->rays : 0;
@@ -158,6 +190,7 @@ bool fit_refine(const struct fit_view *view, struct fit *fit, int steps)
 {
 	vec2 from = fit->pos;
 	struct edge edge[OUTLINE_POINTS];
+	double shift[UNKNOWNS] = {0};
 	for (int s = 0; s <= steps; s++) {
 		bool last = s == steps;
 		if (!outline_of_ball(view->camera, fit->pos, view->radius, fit->scale, &fit->outline))
@@ -165,18 +198,18 @@ bool fit_refine(const struct fit_view *view, struct fit *fit, int steps)
 		find_edges(view, fit, s == 0 ? REACH_WIDE : REACH_NARROW, edge);
 		if (last)
 			break;
-		double shift[3], j[4];
+		double j[4];
 		solve_shift(fit, edge, (s == 0 ? 4 : 2) * fit->outline.radius_px / 15.5, shift);
 		if (!outline_jacobian(view->camera, fit->pos, view->radius, j))
 			return false;
 		double det = j[0] * j[3] - j[1] * j[2];
-		fit->pos.x += (j[3] * shift[0] - j[1] * shift[1]) / det;
-		fit->pos.y += (j[0] * shift[1] - j[2] * shift[0]) / det;
-		fit->scale += shift[2] / fit->outline.radius_px;
+		fit->pos.x += (j[3] * shift[SHIFT_X] - j[1] * shift[SHIFT_Y]) / det;
+		fit->pos.y += (j[0] * shift[SHIFT_Y] - j[2] * shift[SHIFT_X]) / det;
+		fit->scale += shift[GROWTH] / fit->outline.radius_px;
 		fit->scale = fmin(fmax(fit->scale, 0.85), 1.12);
 		if (!(vec2_dist(fit->pos, from) < 0.6 * view->radius))
 			return false;
 	}
-	judge(fit, edge);
+	judge(fit, edge, shift[CREASE]);
 	return true;
 }

@@ -8,6 +8,9 @@
 struct fit {
 	vec2 pos;		/* m */
 	double scale;		/* apparent radius over the true one */
+	double expected_scale;	/* what scale is pulled towards ... */
+	double scale_spread;	/* ... when the rim leaves it open; 1 sigma, > 0 */
+	float cloth[3];		/* BGR of the cloth around it */
 	/* of the last look: */
 	struct outline outline;
 	int rays;		/* that no neighbour hides, of OUTLINE_POINTS */

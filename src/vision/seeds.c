@@ -89,6 +89,13 @@ static void vote(struct seeds *seeds, const struct scan *scan, float x, float y)
 		seeds->vote[iy * scan->width + ix]++;
 }
 
+/* The rim itself is half cloth, and under a dark ball half shadow: its neighbours decide. */
+static inline bool near_foreign(const uint8_t *mark, ptrdiff_t row)
+{
+	const int bar = SCAN_FOREIGN / 2;
+	return mark[0] >= bar || mark[-1] >= bar || mark[1] >= bar || mark[-row] >= bar || mark[row] >= bar;
+}
+
 /* An edge lies on the outline of a ball one ellipse point inwards or outwards: which of them, colours do not say. */
 static void vote_row(struct seeds *seeds, const struct scan *scan, int y, int x0, int x1)
 {
@@ -96,7 +103,7 @@ static void vote_row(struct seeds *seeds, const struct scan *scan, int y, int x0
 	const struct seed_shape *shapes = seeds->shape + y / SCAN_CELL * scan->cells_x;
 	for (int x = x0; x < x1; x++) {
 		int gx, gy;
-		if (scan->mark[y * scan->width + x] < SCAN_FOREIGN / 2 ||
+		if (!near_foreign(scan->mark + y * scan->width + x, scan->width) ||
 		    edge_at(scan->bgr + y * row + 3 * x, row, &gx, &gy) < EDGE_MIN2)
 			continue;
 		struct seed_shape s = shapes[x / SCAN_CELL];

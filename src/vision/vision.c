@@ -18,8 +18,6 @@ struct vision {
 	bool has_colours;
 	struct marker_finder *finder;
 	struct detector detector;
-	int feature_count;
-	struct colour_feature feature[VISION_BALL_MAX];
 };
 
 struct vision_def vision_def_default(void)
@@ -60,7 +58,8 @@ int vision_create(struct vision **out, const struct vision_def *def, char *err, 
 		v->colours = colour_classifier(def->colours);
 	rc = marker_finder_create(&v->finder, def->markers.dictionary_count, def->markers.dictionary_bits, err, err_size);
 	if (rc == 0) {
-		rc = detector_init(&v->detector, def->table, def->intrinsics.width, def->intrinsics.height);
+		rc = detector_init(&v->detector, def->table, v->has_colours ? &v->colours : NULL, def->intrinsics.width,
+				   def->intrinsics.height);
 		if (rc < 0)
 			vision_fail(rc, err, err_size, "no memory for frames of %d x %d px", def->intrinsics.width,
 				    def->intrinsics.height);
@@ -82,9 +81,11 @@ void vision_destroy(struct vision *vision)
 	free(vision);
 }
 
-void vision_features(const struct vision *vision, struct colour_feature *out)
+void vision_samples(const struct vision *vision, struct colour_sample *out)
 {
-	memcpy(out, vision->feature, sizeof(*out) * (size_t)vision->feature_count);
+	const struct detector *d = &vision->detector;
+	for (int i = 0; i < d->count && i < VISION_BALL_MAX; i++)
+		out[i] = (struct colour_sample){d->candidate[i].look, d->candidate[i].fit.scale, COLOUR_UNKNOWN};
 }
 
 void vision_reset(struct vision *vision)
@@ -112,16 +113,14 @@ static bool calibrate(struct vision *v, const struct image *frame, struct vision
 	return true;
 }
 
-static void report(struct vision *v, const struct image *frame, struct vision_result *out)
+static void report(struct vision *v, struct vision_result *out)
 {
 	struct detector *d = &v->detector;
-	struct colour_feature *feature = v->feature;
+	struct colour_feature feature[VISION_BALL_MAX];
 	struct colour_verdict verdict[VISION_BALL_MAX];
 	int count = d->count < VISION_BALL_MAX ? d->count : VISION_BALL_MAX;
 	for (int i = 0; i < count; i++) {
-		float cloth[3];
-		scan_cloth_at(&d->scan, d->candidate[i].fit.outline.centre, cloth);
-		feature[i] = colour_measure(frame, &d->candidate[i].fit.outline, cloth);
+		feature[i] = d->candidate[i].look;
 		verdict[i] = (struct colour_verdict){COLOUR_UNKNOWN, 1};
 	}
 	if (v->has_colours)
@@ -132,13 +131,12 @@ static void report(struct vision *v, const struct image *frame, struct vision_re
 						    .confidence = c->confidence, .radius_px = c->fit.outline.radius_px,
 						    .rim_support = c->fit.support};
 	}
-	out->ball_count = v->feature_count = count;
+	out->ball_count = count;
 }
 
 int vision_detect(struct vision *vision, const struct image *frame, struct vision_result *out, char *err, size_t err_size)
 {
 	struct vision_result r = {0};
-	vision->feature_count = 0;
 	if (!camera_scale(&vision->def.intrinsics, frame->width, frame->height, &r.camera.in))
 		return vision_fail(-EINVAL, err, err_size, "a frame of %d x %d px does not fit a camera of %d x %d px",
 				   frame->width, frame->height, vision->def.intrinsics.width, vision->def.intrinsics.height);
@@ -147,7 +145,7 @@ int vision_detect(struct vision *vision, const struct image *frame, struct visio
 			r.calibration = CALIBRATION_NONE;
 			snprintf(r.reason, sizeof(r.reason), "the table is not in the picture");
 		} else if (detector_frame(&vision->detector, frame, &r.camera)) {
-			report(vision, frame, &r);
+			report(vision, &r);
 		} else {
 			snprintf(r.reason, sizeof(r.reason), "no cloth is seen: too dark or too bright");
 		}

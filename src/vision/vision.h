@@ -18,7 +18,8 @@ struct marker_layout {
 	struct { int id; vec2 centre; } marker[MARKER_MAX];	/* m, table frame */
 };
 
-struct colour_feature;
+struct colour_model;
+struct colour_sample;
 
 struct vision_def {
 	const struct table *table;	/* borrowed: sizes, pockets, ball radius */
@@ -69,8 +70,9 @@ int vision_detect(struct vision *vision, const struct image *frame, struct visio
 int vision_track(struct vision *vision, const struct image *frame, double time, struct vision_result *out, char *err,
 		 size_t err_size);
 
-/* What the balls of the last result looked like (vision/colour.h), in its order: out has room for VISION_BALL_MAX. For learning colours. */
-void vision_features(const struct vision *vision, struct colour_feature *out);
+/* What the balls of the last vision_detect() looked like (vision/colour.h; colour UNKNOWN), in its order: out has room for
+ * VISION_BALL_MAX. For learning colours. */
+void vision_samples(const struct vision *vision, struct colour_sample *out);
 
 /* Forgets tracks and pose. */
 void vision_reset(struct vision *vision);
