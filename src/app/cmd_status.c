@@ -40,12 +40,26 @@ struct texts {
 	char process[24], state[24], error[128];
 };
 
+static double up_seconds(const billiard_status_t *s)
+{
+	return 1e-6 * ((double)s->utime - (double)s->started_utime);
+}
+
+/* JSON has no bytes, and a cut text may end within a character. */
+static void text(char *out, size_t size, const uint8_t *bytes, size_t byte_count)
+{
+	bus_text(out, size, bytes, byte_count);
+	for (; *out; out++)
+		if ((unsigned char)*out > 126)
+			*out = '?';
+}
+
 static struct texts texts_of(const billiard_status_t *s)
 {
 	struct texts t;
-	bus_text(t.process, sizeof t.process, s->process, sizeof s->process);
-	bus_text(t.state, sizeof t.state, s->state, sizeof s->state);
-	bus_text(t.error, sizeof t.error, s->error, sizeof s->error);
+	text(t.process, sizeof t.process, s->process, sizeof s->process);
+	text(t.state, sizeof t.state, s->state, sizeof s->state);
+	text(t.error, sizeof t.error, s->error, sizeof s->error);
 	return t;
 }
 
@@ -55,12 +69,12 @@ static void print_json(const billiard_status_t *s)
 	json_t *metrics = json_object();
 	for (int i = 0; i < s->metric_count; i++) {
 		char name[24], unit[12];
-		bus_text(name, sizeof name, s->metrics[i].name, sizeof s->metrics[i].name);
-		bus_text(unit, sizeof unit, s->metrics[i].unit, sizeof s->metrics[i].unit);
+		text(name, sizeof name, s->metrics[i].name, sizeof s->metrics[i].name);
+		text(unit, sizeof unit, s->metrics[i].unit, sizeof s->metrics[i].unit);
 		json_object_set_new(metrics, name, json_pack("{s:f,s:s}", "value", s->metrics[i].value, "unit", unit));
 	}
 	json_t *object = json_pack("{s:s,s:i,s:s,s:s,s:f,s:I,s:I,s:o}", "process", t.process, "pid", (int)s->pid, "state", t.state, "error",
-				   t.error, "up_s", 1e-6 * (double)(s->utime - s->started_utime), "received", (json_int_t)s->received,
+				   t.error, "up_s", up_seconds(s), "received", (json_int_t)s->received,
 				   "ignored", (json_int_t)s->ignored, "metrics", metrics);
 	if (!object)
 		return;
@@ -73,11 +87,11 @@ static void print_line(const billiard_status_t *s)
 {
 	struct texts t = texts_of(s);
 	printf("%-20s %7d  %-16s up %6.0f s  in %lld, ignored %lld", t.process, s->pid, t.state,
-	       1e-6 * (double)(s->utime - s->started_utime), (long long)s->received, (long long)s->ignored);
+	       up_seconds(s), (long long)s->received, (long long)s->ignored);
 	for (int i = 0; i < s->metric_count; i++) {
 		char name[24], unit[12];
-		bus_text(name, sizeof name, s->metrics[i].name, sizeof s->metrics[i].name);
-		bus_text(unit, sizeof unit, s->metrics[i].unit, sizeof s->metrics[i].unit);
+		text(name, sizeof name, s->metrics[i].name, sizeof s->metrics[i].name);
+		text(unit, sizeof unit, s->metrics[i].unit, sizeof s->metrics[i].unit);
 		printf(", %s %.4g%s%s", name, s->metrics[i].value, strcmp(unit, "1") ? " " : "", strcmp(unit, "1") ? unit : "");
 	}
 	putchar('\n');
@@ -145,7 +159,7 @@ static int parse(struct options *o, const char *usage, int argc, char **argv)
 					      {"help", no_argument, NULL, 'h'},		{NULL, 0, NULL, 0}};
 	*o = (struct options){config_default_path(), NULL, false, 1.5};
 	int c;
-	while ((c = getopt_long(argc, argv, "c:h", table, NULL)) != -1) {
+	while ((c = getopt_long(argc, argv, "+c:h", table, NULL)) != -1) {
 		if (c == 'c')
 			o->config = optarg;
 		else if (c == 'b')

@@ -69,7 +69,8 @@ static bool offer(struct frame_source *s, struct frame_source_frame *frame, bool
 	s->slot = *frame;
 	*frame = old;
 	s->full = true;
-	s->figures.error[0] = '\0';
+	if (live)
+		s->figures.error[0] = '\0';	/* the camera is back */
 	bool go_on = !s->stop;
 	pthread_mutex_unlock(&s->lock);
 	wake_loop(s);
@@ -81,6 +82,7 @@ static bool report(struct frame_source *s, const char *error, double wait)
 	struct timespec until = deadline_in(wait);
 	pthread_mutex_lock(&s->lock);
 	snprintf(s->figures.error, sizeof s->figures.error, "%s", error);
+	s->figures.bad++;
 	wake_loop(s);
 	bool go_on = wait > 0 ? wait_until(s, &until) : !s->stop;
 	pthread_mutex_unlock(&s->lock);

@@ -23,9 +23,9 @@ struct frame_source_frame {
 };
 
 struct frame_source_figures {
-	int64_t frames, dropped;
+	int64_t frames, dropped, bad;	/* bad: photographs that are none, attempts to open a camera */
 	bool ended;			/* files: nothing more will come */
-	char error[256];		/* last one; empty none */
+	char error[256];		/* last one of files; of a camera the present one; empty none */
 };
 
 struct frame_source;	/* opaque */

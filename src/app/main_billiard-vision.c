@@ -10,6 +10,7 @@
 #include "vision/vision.h"
 
 static const double FILE_FPS = 10, CAMERA_FPS = 30;	/* 1/s */
+static const char CHANNEL_CHARACTERS[] = "ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789_-";
 enum { DARK_FRAMES = 6 };	/* more than the controller forgives */
 static const double SILENCE = 1;	/* s without a frame until the table counts as unseen */
 enum { JPEG_QUALITY = 92, SOURCE_TICK_US = 500000 };
@@ -206,7 +207,7 @@ static void describe(void *context, struct process *process)
 	process_metric(process, "latency", "ms", 1e3 * p->latency);
 	process_metric(process, "work", "ms", 1e3 * p->work);
 	process_metric(process, "dropped", "1", (double)f.dropped);
-	process_metric(process, "bad", "1", (double)p->bad);
+	process_metric(process, "bad", "1", (double)(p->bad + f.bad));
 	process_metric(process, "balls", "1", p->result.ball_count);
 	process_metric(process, "residual", "px", p->result.residual_px);
 }
@@ -217,8 +218,10 @@ static int open_source(struct vision_process *p, const struct process_options *o
 {
 	const char *source = options->source ? options->source : p->config.source;
 	if (strncmp(source, "lcm:", 4) == 0) {
-		if (!source[4]) {
-			snprintf(err, err_size, "--source: \"%.64s\" names no channel", source);
+		/* LCM takes regular expressions: more than one camera at a time makes no sense. */
+		const char *channel = source + 4;
+		if (!channel[0] || strlen(channel) > 60 || strspn(channel, CHANNEL_CHARACTERS) != strlen(channel)) {
+			snprintf(err, err_size, "source: \"%.64s\" names no channel", source);
 			return -EINVAL;
 		}
 		return bus_subscribe(p->process.bus, source + 4, &bus_image, BUS_LATEST, on_camera, p);

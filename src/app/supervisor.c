@@ -23,7 +23,7 @@ void supervisor_init(struct supervisor *s, sd_event *event, const char *config, 
 }
 
 /* In the child: becomes the program. Never returns. */
-static _Noreturn void become(const struct supervised *c, const char *path)
+static _Noreturn void become(const struct supervised *c, const char *path, pid_t parent)
 {
 	char arguments[sizeof c->arguments];
 	char *argv[ARGUMENT_MAX + 6] = {(char *)c->name};
@@ -44,6 +44,8 @@ static _Noreturn void become(const struct supervised *c, const char *path)
 	sigprocmask(SIG_SETMASK, &none, NULL);
 	/* Should this process be killed, its children must not stay behind. */
 	prctl(PR_SET_PDEATHSIG, SIGTERM);
+	if (getppid() != parent)
+		_exit(0);
 	execv(path, argv);
 	fprintf(stderr, "%s: %s\n", path, strerror(errno));
 	_exit(127);
@@ -66,9 +68,9 @@ static int launch(struct supervised *c, char *err, size_t err_size)
 		return -errno;
 	}
 	fflush(NULL);
-	pid_t pid = fork();
+	pid_t parent = getpid(), pid = fork();
 	if (pid == 0)
-		become(c, path);
+		become(c, path, parent);
 	int r = pid < 0 ? -errno : sd_event_add_child(c->supervisor->event, &c->child, pid, WEXITED, on_child, c);
 	if (r < 0) {
 		snprintf(err, err_size, "%s: %s", c->name, strerror(-r));
@@ -86,14 +88,37 @@ static bool any_runs(const struct supervisor *s)
 	return false;
 }
 
+/* A service that failed and is to be started again. */
+static bool any_waits(const struct supervisor *s)
+{
+	for (int i = 0; i < s->count; i++) {
+		int enabled = SD_EVENT_OFF;
+		if (s->service[i].restart && sd_event_source_get_enabled(s->service[i].restart, &enabled) >= 0 && enabled != SD_EVENT_OFF)
+			return true;
+	}
+	return false;
+}
+
+static int on_restart(sd_event_source *source, uint64_t usec, void *context);
+
+static void plan_restart(struct supervised *c)
+{
+	sd_event *event = c->supervisor->event;
+	c->restart = sd_event_source_unref(c->restart);
+	if (sd_event_add_time_relative(event, &c->restart, CLOCK_MONOTONIC, RESTART_US, 0, on_restart, c) < 0)
+		fprintf(stderr, "billiard: %s cannot be started again\n", c->name);
+}
+
 static int on_restart(sd_event_source *source, uint64_t usec, void *context)
 {
 	(void)source, (void)usec;
 	struct supervised *c = context;
 	char err[PATH_MAX + 128];
 	c->restarts++;
-	if (!c->supervisor->stopping && launch(c, err, sizeof err) < 0)
-		fprintf(stderr, "billiard: %s\n", err);
+	if (c->supervisor->stopping || launch(c, err, sizeof err) == 0)
+		return 0;
+	fprintf(stderr, "billiard: %s\n", err);
+	plan_restart(c);
 	return 0;
 }
 
@@ -110,10 +135,11 @@ static int on_child(sd_event_source *source, const siginfo_t *info, void *contex
 	fprintf(stderr, "billiard: %s ended (%s %d)%s\n", c->name, info->si_code == CLD_EXITED ? "status" : "signal", info->si_status,
 		bad_use ? ", not started again" : ", starting it again");
 	/* Status 2 is a wrong configuration or address: trying again changes nothing. */
-	if (bad_use)
-		return any_runs(s) ? 0 : sd_event_exit(s->event, 2);
-	c->restart = sd_event_source_unref(c->restart);
-	return sd_event_add_time_relative(s->event, &c->restart, CLOCK_MONOTONIC, RESTART_US, 0, on_restart, c);
+	if (!bad_use)
+		plan_restart(c);
+	else if (!any_runs(s) && !any_waits(s))
+		sd_event_exit(s->event, 2);
+	return 0;
 }
 
 int supervisor_start(struct supervisor *s, const char *name, const char *arguments, char *err, size_t err_size)
