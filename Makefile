@@ -19,7 +19,7 @@ JOBS ?= $(shell nproc)
 
 PHYSICS := ball collide contact contact_ball_real contact_mathavan contact_stronge detect event inverse model motion queue \
 	roots sim table trace
-SEARCH := candidate cost frontier geometry plan play pool request respot rules safety shot step tolerance
+SEARCH := candidate cost frontier geometry plan play pool refine request respot rules safety shot solutions step tolerance
 VISION := camera colour detect fit linear outline pose reason scan seeds vision
 VISION_CV := capture_cv image_io_cv markers_cv marker_image_cv
 # app: what the programs share

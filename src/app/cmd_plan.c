@@ -307,9 +307,10 @@ static int print_json(const struct run *run)
 	}
 	if (status != CMD_OK)
 		return status;
-	return cmd_json_line(json_pack("{s:i, s:I, s:I, s:f, s:b}", "plans", run->result.plan_count, "nodes",
-				       (json_int_t)run->result.nodes, "sims", (json_int_t)run->result.sims, "ms", run->ms, "exhausted",
-				       run->result.exhausted));
+	return cmd_json_line(json_pack("{s:i, s:I, s:I, s:I, s:I, s:I, s:f, s:b}", "plans", run->result.plan_count, "nodes",
+				       (json_int_t)run->result.nodes, "sims", (json_int_t)run->result.sims, "tried",
+				       (json_int_t)run->result.tried, "landed", (json_int_t)run->result.landed, "refined",
+				       (json_int_t)run->result.refined, "ms", run->ms, "exhausted", run->result.exhausted));
 }
 
 static void print_shot(const struct run *run, const struct plan_shot *shot)
@@ -341,8 +342,12 @@ static int print_table(const struct run *run)
 			print_shot(run, &plan->shot[s]);
 		}
 	}
-	printf("%d plans, %llu nodes, %llu simulations, %.2f ms, %s\n", run->result.plan_count, (unsigned long long)run->result.nodes,
-	       (unsigned long long)run->result.sims, run->ms, run->result.exhausted ? "exhausted" : "not exhausted");
+	const struct plan_result *result = &run->result;
+	printf("%d plans, %llu nodes, %llu simulations (%llu shots tried, %llu land", result->plan_count, (unsigned long long)result->nodes,
+	       (unsigned long long)result->sims, (unsigned long long)result->tried, (unsigned long long)result->landed);
+	if (result->refined > 0)
+		printf(", %llu with the aim refined", (unsigned long long)result->refined);
+	printf("), %.2f ms, %s\n", run->ms, result->exhausted ? "exhausted" : "not exhausted");
 	return ferror(stdout) ? CMD_FAILED : CMD_OK;
 }
 

@@ -178,3 +178,19 @@ int candidate_expand(const struct scene *scene, const struct node *node, struct 
 	}
 	return count;
 }
+
+void candidate_goals(const struct scene *scene, const struct node *node, struct goal goal[PLAN_CHAIN_MAX])
+{
+	vec2 to = scene->table->pocket[node->pocket].centre;
+	for (int i = 0; i < node->chain_count; i++) {
+		struct images images;
+		struct way way;
+		vec2 start = scene->ball[node->chain[i]].pos;
+		images_init(&images, scene->mirrors, to, (vec2){1, 0}, scene->rails);
+		bool built = way_build(&way, scene->mirrors, &images, node->sequence[i], start);
+		assert(built);
+		(void)built;
+		goal[i] = (struct goal){to, way.rails};
+		to = vec2_madd(start, -2 * scene->table->ball_radius / way.leg[0], vec2_sub(way.point[1], start));
+	}
+}

@@ -44,6 +44,13 @@ struct node candidate_root(const struct scene *scene, int pocket);
 /* All chains that are one ball longer, best effort in no order; at most capacity. Returns how many; *overflow is set when more were there. */
 int candidate_expand(const struct scene *scene, const struct node *node, struct node *child, int capacity, bool *overflow);
 
+/* Where each ball of a chain must go (place of contact, for chain[0] the pocket), and over how many cushions. */
+struct goal {
+	vec2 point;
+	int rails;
+};
+void candidate_goals(const struct scene *scene, const struct node *node, struct goal goal[PLAN_CHAIN_MAX]);
+
 /* Start speed for an end speed after a leg (4.33), in the form that the profile asks for. rolling: it comes off a cushion. */
 double candidate_leg_backward(const struct scene *scene, double v_end, double way, bool rolling);
 

@@ -92,16 +92,19 @@ static void export_plan(const struct planner *planner, const struct solution *so
 
 static void export_result(struct planner *planner, struct plan_result *result)
 {
-	const struct solutions *list = best_solutions(planner);
+	struct solutions *list = best_solutions(planner);
 	*result = (struct plan_result){
 		.plan = planner->plan,
 		.plan_count = list ? list->count : 0,
 		.nodes = planner->nodes,
 		.sims = planner->sims,
+		.tried = planner->tried,
+		.landed = planner->landed,
+		.refined = planner->refined,
 		.exhausted = !planner->cut && !planner->overflow,
 	};
 	for (int i = 0; i < result->plan_count; i++)
-		export_plan(planner, &list->item[i], &planner->plan[i]);
+		export_plan(planner, solutions_at(list, i), &planner->plan[i]);
 	result->status = result->plan_count > 0 ? PLAN_OK : PLAN_NONE;
 }
 
@@ -110,7 +113,7 @@ static void find_tolerances(struct planner *planner)
 {
 	struct solutions *list = best_solutions(planner);
 	for (int i = 0; list && i < list->count && i < planner->request->tolerances; i++) {
-		struct solution *s = &list->item[i];
+		struct solution *s = solutions_at(list, i);
 		tolerance_find(planner, &planner->state[s->state], &s->last, planner->work);
 		for (int32_t at = s->state; planner->state[at].parent != NO_STATE; at = planner->state[at].parent) {
 			struct state *state = &planner->state[at];

@@ -6,7 +6,7 @@
 #include "physics/sim.h"
 #include "search/rules.h"
 
-enum { PLAN_MAX = 256, PLAN_SHOTS_MAX = 4, PLAN_CHAIN_MAX = 4, PLAN_RAILS_MAX = 3, PLAN_POTTED_MAX = 8, PLAN_WORKERS_MAX = 16 };
+enum { PLAN_MAX = 1024, PLAN_SHOTS_MAX = 4, PLAN_CHAIN_MAX = 4, PLAN_RAILS_MAX = 3, PLAN_POTTED_MAX = 8, PLAN_WORKERS_MAX = 16 };
 
 /* A player profile (thesis O-6): weights and constants of the cost, by name of the term. Filled from config/. */
 struct cost_profile {
@@ -86,6 +86,7 @@ struct plan_result {
 	int plan_count;		/* best first */
 	struct plan *plan;	/* owned by the planner, valid until its next run */
 	uint64_t nodes, sims;
+	uint64_t tried, landed, refined;	/* shots simulated at the mirror's aim; those that did as meant; those that did after their aim was refined */
 	bool exhausted;		/* nothing left to expand */
 };
 

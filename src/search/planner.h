@@ -40,7 +40,7 @@ struct slot {
 	int child_count;
 	struct played played[SPEEDS_MAX];
 	int played_count;
-	uint64_t expansions, sims;
+	uint64_t expansions, sims, tried, landed, refined;
 	bool overflow;
 };
 
@@ -52,7 +52,8 @@ struct solution {
 };
 
 struct solutions {
-	struct solution item[PLAN_MAX];	/* best first */
+	struct solution item[PLAN_MAX];
+	uint16_t order[PLAN_MAX];	/* indices of items, best first */
 	int count, limit;
 };
 
@@ -71,7 +72,7 @@ struct planner {
 	/* of the running search */
 	const struct plan_request *request;
 	int ball_count, cue, state_count, batch_count;
-	uint64_t nodes, sims;
+	uint64_t nodes, sims, tried, landed, refined;
 	double deadline;
 	bool overflow, cut;		/* something was dropped; ended before its time */
 };
@@ -86,8 +87,14 @@ bool search_is_over(const struct planner *planner);
 /* Simulates a complete node at all its start speeds. */
 void slot_play(const struct planner *planner, struct slot *slot, struct workspace *work);
 
+/* Turns the aim of record->shot until the meant ball goes where it should; up to some 30 simulations. True when it then falls. */
+bool shot_refine(const struct planner *planner, struct slot *slot, struct workspace *work, struct record *record,
+		 struct rules_outcome *outcome);
+
 /* Sorted insertion; false when it is not among the limit best. */
 bool solutions_add(struct solutions *solutions, const struct solution *solution);
+/* The rank-th best. */
+struct solution *solutions_at(struct solutions *solutions, int rank);
 /* The list of the longest sequences that there are; NULL when there is none. */
 struct solutions *best_solutions(struct planner *planner);
 

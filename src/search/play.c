@@ -31,9 +31,27 @@ static bool rename_fluke(const struct cost_profile *profile, const struct scene 
 	return false;
 }
 
-void slot_play(const struct planner *planner, struct slot *slot, struct workspace *work)
+/* Plays record->shot; where mirroring is not how balls come off cushions and throw is felt, the aim is refined. True for a proposal. */
+static bool try_shot(const struct planner *planner, struct slot *slot, struct workspace *work, struct record *record,
+		     struct rules_outcome *outcome)
 {
 	const struct state *state = &planner->state[slot->node.state];
+	slot->sims++;
+	slot->tried++;
+	bool played = shot_play(work, planner->def.table, &planner->def.model, state->ball, planner->ball_count, &state->rules, record,
+				outcome);
+	bool landed = played && record->foul == 0 && shot_is_as_meant(record);
+	slot->landed += landed;
+	if (!planner->def.model.thesis_motion && played) {
+		bool refined = shot_refine(planner, slot, work, record, outcome);
+		slot->refined += refined;
+		return refined;
+	}
+	return landed || (played && record->foul == 0 && rename_fluke(&planner->def.profile, &state->scene, record));
+}
+
+void slot_play(const struct planner *planner, struct slot *slot, struct workspace *work)
+{
 	const struct cost_profile *profile = &planner->def.profile;
 	int speeds = planner->request->speeds < SPEEDS_MAX ? planner->request->speeds : SPEEDS_MAX;
 	for (int i = 0; i < speeds; i++) {
@@ -43,12 +61,7 @@ void slot_play(const struct planner *planner, struct slot *slot, struct workspac
 		record->shot.speed = slot->node.speed + i * profile->speed_step;
 		if (record->shot.speed > profile->max_speed)
 			break;
-		slot->sims++;
-		if (!shot_play(work, planner->def.table, &planner->def.model, state->ball, planner->ball_count, &state->rules, record,
-			       &played->outcome) ||
-		    record->foul != 0)
-			continue;
-		if (!shot_is_as_meant(record) && !rename_fluke(profile, &state->scene, record))
+		if (!try_shot(planner, slot, work, record, &played->outcome))
 			continue;
 		record->cost = record->search_cost + cost_result(profile, record->points, record->shot.speed, record->search_cost);
 		slot->played_count++;

@@ -130,7 +130,7 @@ void search_begin(struct planner *planner)
 	frontier_clear(&planner->frontier);
 	planner->ball_count = request->ball_count;
 	planner->state_count = 0;
-	planner->nodes = planner->sims = 0;
+	planner->nodes = planner->sims = planner->tried = planner->landed = planner->refined = 0;
 	planner->overflow = planner->cut = false;
 	for (int i = 0; i < PLAN_SHOTS_MAX; i++) {
 		planner->solutions[i].count = 0;
@@ -143,21 +143,6 @@ void search_begin(struct planner *planner)
 		add_places_in_hand(planner);
 	if (planner->state_count == 0)
 		add_root_state(planner, request->ball[planner->cue].pos);
-}
-
-bool solutions_add(struct solutions *solutions, const struct solution *solution)
-{
-	int at = solutions->count;
-	while (at > 0 && solution->cost < solutions->item[at - 1].cost)
-		at--;
-	if (at == solutions->limit)
-		return false;
-	if (solutions->count < solutions->limit)
-		solutions->count++;
-	for (int i = solutions->count - 1; i > at; i--)
-		solutions->item[i] = solutions->item[i - 1];
-	solutions->item[at] = *solution;
-	return true;
 }
 
 struct solutions *best_solutions(struct planner *planner)
@@ -173,7 +158,7 @@ static void work_on(void *context, int item, int worker)
 	struct planner *planner = context;
 	struct slot *slot = &planner->slot[item];
 	slot->child_count = slot->played_count = 0;
-	slot->expansions = slot->sims = 0;
+	slot->expansions = slot->sims = slot->tried = slot->landed = slot->refined = 0;
 	slot->overflow = false;
 	if (atomic_load_explicit(&planner->cancel, memory_order_relaxed))
 		return;
@@ -189,8 +174,8 @@ static void work_on(void *context, int item, int worker)
 /* Cost that a sequence must stay below to be among the wanted ones. */
 static double cost_limit(const struct planner *planner)
 {
-	const struct solutions *full = &planner->solutions[planner->request->depth - 1];
-	return full->count == full->limit ? full->item[full->count - 1].cost : INFINITY;
+	struct solutions *full = &planner->solutions[planner->request->depth - 1];
+	return full->count == full->limit ? solutions_at(full, full->count - 1)->cost : INFINITY;
 }
 
 /* Nothing on the table is left to play for. */
@@ -209,7 +194,7 @@ static void merge_played(struct planner *planner, const struct slot *slot, const
 	bool last = shots == depth || is_cleared(&played->outcome, planner->ball_count);
 	struct solution solution = {from->cost + played->record.cost, (int32_t)slot->node.state, played->record};
 	struct solutions *list = &planner->solutions[last ? depth - 1 : shots - 1];
-	if (solutions_add(list, &solution) && list == best_solutions(planner) && list->item[0].cost == solution.cost)
+	if (solutions_add(list, &solution) && list == best_solutions(planner) && solutions_at(list, 0)->cost == solution.cost)
 		*improved = true;
 	if (last || solution.cost >= cost_limit(planner))
 		return;
@@ -234,6 +219,9 @@ static void merge(struct planner *planner, const struct slot *slot, bool *improv
 {
 	planner->nodes += slot->expansions;
 	planner->sims += slot->sims;
+	planner->tried += slot->tried;
+	planner->landed += slot->landed;
+	planner->refined += slot->refined;
 	planner->overflow |= slot->overflow;
 	for (int i = 0; i < slot->played_count; i++)
 		merge_played(planner, slot, &slot->played[i], improved);
