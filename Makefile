@@ -34,8 +34,9 @@ TESTS := config position cmd plot draw render player contact_real contact_record
 TEST_SHARED := harness poly_judge scenes
 # tests that are scripts: tests/NAME.sh, called with the build folder
 TEST_SCRIPTS := cli
-# bench/bench_NAME.c each
-BENCHES :=
+# bench/bench_NAME.c each; bench/NAME.c shared by them
+BENCHES := physics
+BENCH_SHARED := report
 # fuzz/fuzz_NAME.c each, seeds in fuzz/corpus/NAME
 FUZZERS := position config shot_file
 FUZZ_SECONDS ?= 20
@@ -55,7 +56,8 @@ CXXFLAGS_ALL = -std=c++17 $(BASE) $(WARN) $(CXXFLAGS)
 # pkg-config runs once, when the first file is compiled: on a bare machine the packages come first.
 APP_PKGS := lcm glib-2.0 libconfig jansson cairo sdl2 libsystemd
 APP_CFLAGS = $(eval APP_CFLAGS := $$(shell pkg-config --cflags $(APP_PKGS)))$(APP_CFLAGS)
-CV_CFLAGS = $(eval CV_CFLAGS := $$(shell pkg-config --cflags opencv4 | sed 's/-I/-isystem /g'))$(CV_CFLAGS)
+# opencv4.pc comes with libopencv-dev only, which brings far more than is used here.
+CV_CFLAGS := -isystem /usr/include/opencv4
 CV_LIBS := -lopencv_aruco -lopencv_calib3d -lopencv_videoio -lopencv_imgcodecs -lopencv_imgproc -lopencv_core
 APP_LIBS = $(eval APP_LIBS := $$(shell pkg-config --libs $(APP_PKGS)))$(APP_LIBS)
 TEST_LIBS = $(eval TEST_LIBS := $$(shell pkg-config --libs check gsl))$(TEST_LIBS)
@@ -74,6 +76,7 @@ ARCHIVES := $(BUILD)/libapp.a $(BUILD)/liblcmtypes.a $(BUILD)/libsearch.a $(BUIL
 PROGRAM_BINS := $(addprefix $(BUILD)/,$(PROGRAMS))
 TEST_BINS := $(patsubst %,$(BUILD)/tests/test_%,$(TESTS))
 FUZZ_BINS := $(patsubst %,$(BUILD)/fuzz_%,$(FUZZERS))
+BENCH_SHARED_O := $(call obj,bench,$(BENCH_SHARED)) $(call obj,tests,scenes)
 BENCH_BINS := $(patsubst %,$(BUILD)/bench/bench_%,$(BENCHES))
 
 .PHONY: all demo check check-built bench eval fuzz fuzzers headers lint install clean setup tests programs
@@ -131,7 +134,7 @@ $(APP_O) $(patsubst %,$(BUILD)/src/app/main_%.o,$(PROGRAMS)) $(TEST_SHARED_O) \
 link = $(CXX) $(BASE) $(LDFLAGS) -Wl,--as-needed -o $@ $(filter %.o,$^) -Wl,--start-group $(filter %.a,$^) -Wl,--end-group
 $(BUILD)/tests/test_%: $(BUILD)/tests/test_%.o $(TEST_SHARED_O) $(ARCHIVES)
 	$(link) $(TEST_LIBS) $(LIBS)
-$(BUILD)/bench/bench_%: $(BUILD)/bench/bench_%.o $(TEST_SHARED_O) $(ARCHIVES)
+$(BUILD)/bench/bench_%: $(BUILD)/bench/bench_%.o $(BENCH_SHARED_O) $(ARCHIVES)
 	$(link) $(TEST_LIBS) $(LIBS)
 $(BUILD)/fuzz_%: $(BUILD)/fuzz/fuzz_%.o $(ARCHIVES)
 	$(link) -fsanitize=fuzzer $(LIBS)
