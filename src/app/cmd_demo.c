@@ -316,6 +316,7 @@ static int run(struct demo *d)
 {
 	char err[512] = "";
 	struct process_options options = {.config = d->options.config};
+	supervisor_block();
 	int r = process_init(&d->process, "billiard-demo", &options, &d->config);
 	if (r < 0)
 		return 2;

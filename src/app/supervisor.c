@@ -13,13 +13,18 @@
 
 enum { RESTART_US = 500000, KILL_US = 3000000, ARGUMENT_MAX = 24 };
 
-void supervisor_init(struct supervisor *s, sd_event *event, const char *config, const char *bus)
+void supervisor_block(void)
 {
-	*s = (struct supervisor){.event = event, .config = config, .bus = bus};
 	sigset_t set;
 	sigemptyset(&set);
 	sigaddset(&set, SIGCHLD);
 	sigprocmask(SIG_BLOCK, &set, NULL);
+}
+
+void supervisor_init(struct supervisor *s, sd_event *event, const char *config, const char *bus)
+{
+	*s = (struct supervisor){.event = event, .config = config, .bus = bus};
+	supervisor_block();
 }
 
 /* In the child: becomes the program. Never returns. */

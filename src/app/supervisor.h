@@ -29,7 +29,8 @@ struct supervisor {
 	sd_event_source *kill_timer;	/* owned */
 };
 
-/* Blocks SIGCHLD (sd-event needs that): call before other threads exist. */
+/* Blocks SIGCHLD, as sd-event needs it: to be called before other threads exist (a bus starts one). */
+void supervisor_block(void);
 void supervisor_init(struct supervisor *s, sd_event *event, const char *config, const char *bus);
 /* 0, -ENOSPC, or a negative errno with the reason. */
 int supervisor_start(struct supervisor *s, const char *name, const char *arguments, char *err, size_t err_size);
