@@ -6,12 +6,13 @@
 static const double EDGE_SLACK = 0.007;		/* m a fitted centre may lie beyond where cushions let it be */
 static const double MOUTH_INNER = 0.8;		/* of a pocket's radius: nearer to its centre a ball has fallen */
 static const double SUPPORT_SEED = 0.4, SUPPORT_MIN = 0.62;
+static const double SUPPORT_CROWDED = 0.3;	/* more of it is wanted where it lies among other foreign things */
 static const double COVER_MIN = 0.55;
 static const double SCALE_MIN = 0.86, SCALE_MAX = 1.085;
 static const double USUAL_SCALE = 0.965, USUAL_SPREAD = 0.02;	/* apparent radius of any ball */
 static const double LIKE_SPREAD = 0.004;	/* the same among balls of one look in one frame */
 static const double LIKE_DISTANCE = 0.45;	/* features nearer than that are of one look */
-static const double OVERLAP_DISTANCE = 0.88;	/* the same for finished fits */
+static const double OVERLAP_DISTANCE = 0.80;	/* the same for finished fits */
 static const double PACK_DISTANCE = 1.08, PACK_COVER = 0.9, SMALL_RADIUS = 7;
 static const double DOUBLE_DISTANCE = 0.75;	/* of a diameter: nearer than that two fits are of one ball */
 
@@ -87,7 +88,7 @@ static void look_around(struct detector *d, struct candidate *c, bool ring)
 				for (int i = 0; i < d->count && !ball; i++)
 					ball = vec2_dist(scan_to_full(s, x, y), d->candidate[i].fit.outline.centre) <
 					       1.1 * d->candidate[i].fit.outline.radius_px;
-				out += !ball;
+				out++;
 				foreign += !ball && mark;
 			}
 		}
@@ -189,7 +190,7 @@ static enum refusal judge(const struct detector *d, const struct candidate *c)
 		return REFUSED_PLACE;
 	if (c->cover < COVER_MIN)
 		return REFUSED_INSIDE;
-	if (c->fit.support < SUPPORT_MIN)
+	if (c->fit.support < SUPPORT_MIN + SUPPORT_CROWDED * c->ring)
 		return REFUSED_RIM;
 	if (c->fit.scale < SCALE_MIN || c->fit.scale > SCALE_MAX)
 		return REFUSED_SIZE;
@@ -279,6 +280,31 @@ static void refuse_overlaps(struct detector *d)
 		}
 }
 
+/* How firmly a fit stands: edges that hold it. */
+static double firmness(const struct candidate *c)
+{
+	return c->fit.rays * c->fit.support * fmin(1, c->fit.contrast / 60) + 1;
+}
+
+/* Balls are solid: where fits overlap, the one that few edges hold gives way more. */
+static void push_apart(struct detector *d, int sweeps)
+{
+	double diameter = 2 * d->table->ball_radius;
+	for (int s = 0; s < sweeps; s++)
+		for (int i = 0; i < d->count; i++)
+			for (int j = 0; j < i; j++) {
+				struct candidate *a = &d->candidate[i], *b = &d->candidate[j];
+				vec2 way = vec2_sub(b->fit.pos, a->fit.pos);
+				double gap = vec2_norm(way) - diameter;
+				if (gap >= 0)
+					continue;
+				double fa = firmness(a), fb = firmness(b);
+				vec2 unit = vec2_unit(way);
+				a->fit.pos = vec2_madd(a->fit.pos, gap * fb / (fa + fb), unit);
+				b->fit.pos = vec2_madd(b->fit.pos, -gap * fa / (fa + fb), unit);
+			}
+}
+
 /* Rounds of fitting, since every ball's hidden rim depends on its neighbours; then judgement. */
 static void settle(struct detector *d, struct fit_view *view)
 {
@@ -288,7 +314,8 @@ static void settle(struct detector *d, struct fit_view *view)
 		fit_together(d, view, 2);
 		refuse_overlaps(d);
 		drop_refused(d);
-		if (round == 0)
+		push_apart(d, 4);
+		if (round < 2)
 			try_packed(d, view);
 	}
 	look(d, view->frame);
@@ -299,6 +326,11 @@ static void settle(struct detector *d, struct fit_view *view)
 		c->confidence = c->fit.support * c->cover;
 	}
 	drop_refused(d);
+	push_apart(d, 20);
+	for (int i = 0; i < d->count; i++) {
+		struct fit *fit = &d->candidate[i].fit;
+		outline_of_ball(view->camera, fit->pos, view->radius, fit->scale, &fit->outline);
+	}
 }
 
 bool detector_frame(struct detector *d, const struct image *frame, const struct camera *camera)
