@@ -6,6 +6,7 @@
 #include <string.h>
 #include <unistd.h>
 
+#include "app/config_table.h"
 #include "app/text_file.h"
 #include "harness.h"
 
@@ -333,6 +334,36 @@ START_TEST(default_path)
 }
 END_TEST
 
+/* Each key has its row in the documentation, with the range that the reader allows. */
+static int check_documented(const char *doc, const struct config_key *keys, const char *prefix)
+{
+	int count = 0;
+	for (const struct config_key *key = keys; key->name; key++) {
+		char name[100], allowed[CONFIG_ALLOWED_SIZE], row[256];
+		snprintf(name, sizeof name, "%s%s", prefix, key->name);
+		config_reader_allowed(key, allowed, sizeof allowed);
+		snprintf(row, sizeof row, "\n| `%s` | %s | ", name, allowed);
+		if (key->type != CONFIG_SECTION)
+			ck_assert_msg(strstr(doc, row) != NULL, "docs/configuration.md lacks \"%s\"", row + 1);
+		count += key->type != CONFIG_SECTION;
+		strcat(name, key->type == CONFIG_LIST ? "[]." : ".");
+		if (key->keys)
+			count += check_documented(doc, key->keys, name);
+	}
+	return count;
+}
+
+START_TEST(every_key_is_documented)
+{
+	char *doc = shipped("docs/configuration.md");
+	int rows = 0, keys = check_documented(doc, config_keys, "");
+	for (const char *row = doc; (row = strstr(row, "\n| `")) != NULL; row++)
+		rows += strncmp(row, "\n| `config/", 11) != 0;
+	ck_assert_int_eq(rows, keys);
+	free(doc);
+}
+END_TEST
+
 Suite *test_suite(void)
 {
 	Suite *suite = suite_create("config");
@@ -344,6 +375,7 @@ Suite *test_suite(void)
 	tcase_add_test(files, profiles_by_name);
 	tcase_add_test(files, projector_shows_the_table);
 	tcase_add_test(files, default_path);
+	tcase_add_test(files, every_key_is_documented);
 	suite_add_tcase(suite, files);
 	TCase *errors = tcase_create("errors");
 	tcase_set_timeout(errors, 60);

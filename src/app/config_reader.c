@@ -62,7 +62,7 @@ static void setting_value(const config_setting_t *setting, char *out, size_t siz
 	}
 }
 
-static void key_allowed(const struct config_key *key, char *out, size_t size)
+void config_reader_allowed(const struct config_key *key, char *out, size_t size)
 {
 	const char *unit = unit_table[key->unit].name;
 	switch (key->type) {
@@ -108,8 +108,8 @@ int config_reader_fail(struct config_reader *reader, const config_setting_t *set
 
 static int fail(struct config_reader *reader, const config_setting_t *setting, const struct config_key *key)
 {
-	char allowed[VALUE_SIZE];
-	key_allowed(key, allowed, sizeof allowed);
+	char allowed[CONFIG_ALLOWED_SIZE];
+	config_reader_allowed(key, allowed, sizeof allowed);
 	return config_reader_fail(reader, setting, NULL, allowed);
 }
 
@@ -262,8 +262,8 @@ int config_reader_group(struct config_reader *reader, const config_setting_t *gr
 	for (const struct config_key *key = keys; code == 0 && key->name; key++) {
 		const config_setting_t *setting = config_setting_get_member((config_setting_t *)group, key->name);
 		if (!setting) {
-			char allowed[VALUE_SIZE];
-			key_allowed(key, allowed, sizeof allowed);
+			char allowed[CONFIG_ALLOWED_SIZE];
+			config_reader_allowed(key, allowed, sizeof allowed);
 			return fail_member(reader, group, key->name, "nothing", allowed);
 		}
 		code = read_key(reader, setting, key, base);

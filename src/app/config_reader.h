@@ -40,6 +40,10 @@ struct config_reader {
 	size_t err_size;
 };
 
+enum { CONFIG_ALLOWED_SIZE = 80 };
+/* What a key may hold, for people: "a number 0.001 to 0.1". */
+void config_reader_allowed(const struct config_key *key, char *out, size_t size);
+
 /* All keys of the table from the group into base. 0, or -EINVAL with "file:line: key: found ..., allowed ..." in err. */
 int config_reader_group(struct config_reader *reader, const config_setting_t *group, const struct config_key *keys, void *base);
 
