@@ -47,7 +47,7 @@ static void help(void)
 	     "  --workers N        threads, 1..16\n"
 	     "  --budget-ms N      time for the search (0: none)\n"
 	     "  --budget-nodes N   nodes for the search (0: none); the same result every time\n"
-	     "  --plans N          wanted, 1..256\n"
+	     "  --plans N          wanted, 1..1024\n"
 	     "  --tolerances N     of so many plans tolerance and success are found\n"
 	     "  --in-hand          the cue ball may be placed in the D\n"
 	     "  --model NAME       thesis, simple, simple-elastic, real, real-mathavan\n"

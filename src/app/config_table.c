@@ -107,6 +107,7 @@ static const struct config_key profile_keys[] = {
 	NUMBER("sigma_speed", UNIT_NONE, 0, 1, IN(cost_profile, sigma_speed)),
 	FLAG("rank_by_success", IN(cost_profile, rank_by_success)),
 	FLAG("program_speed", IN(cost_profile, program_speed)),
+	WHOLE("aims", UNIT_NONE, 1, 9, IN(cost_profile, aims)),
 	FLAG("any_first", IN(cost_profile, any_first)),
 	FLAG("keep_flukes", IN(cost_profile, keep_flukes)),
 	END,

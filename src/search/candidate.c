@@ -4,15 +4,30 @@
 
 #include "physics/inverse.h"
 
-struct node candidate_root(const struct scene *scene, int pocket)
+/* Share of a pocket's radius that the outermost aims lie off its middle; and what such an aim costs, so that the middle comes first. */
+static const double AIM_SPREAD = 0.8, AIM_COST = 0.25;
+
+static vec2 aim_point(const struct scene *scene, int pocket, int aim)
 {
 	const struct pocket *p = &scene->table->pocket[pocket];
+	int outermost = (scene->profile->aims - 1) / 2;
+	double off = outermost > 0 ? AIM_SPREAD * p->radius * aim / outermost : 0;
+	return vec2_madd(p->centre, off, vec2_perp(p->normal));
+}
+
+struct node candidate_root(const struct scene *scene, int pocket, int aim)
+{
+	const struct pocket *p = &scene->table->pocket[pocket];
+	double cost = aim != 0 ? AIM_COST : 0;
 	return (struct node){
+		.cost = cost,
+		.search_cost = cost,
 		.speed = scene->profile->pocket_speed,
 		.carry = 1,
-		.to = p->centre,
+		.to = aim_point(scene, pocket, aim),
 		.after = vec2_scale(p->normal, -1),
 		.pocket = (int16_t)pocket,
+		.aim = (int8_t)aim,
 	};
 }
 
@@ -181,7 +196,7 @@ int candidate_expand(const struct scene *scene, const struct node *node, struct 
 
 void candidate_goals(const struct scene *scene, const struct node *node, struct goal goal[PLAN_CHAIN_MAX])
 {
-	vec2 to = scene->table->pocket[node->pocket].centre;
+	vec2 to = aim_point(scene, node->pocket, node->aim);
 	for (int i = 0; i < node->chain_count; i++) {
 		struct images images;
 		struct way way;

@@ -17,6 +17,7 @@ struct node {
 	double angle;		/* rad, of the complete chain */
 	uint32_t state;		/* index of the position it belongs to */
 	int16_t pocket;
+	int8_t aim;		/* 0 the middle of the pocket, +-1, ... points to either side */
 	uint16_t sequence[PLAN_CHAIN_MAX];	/* of each ball's way */
 	int8_t chain[PLAN_CHAIN_MAX];
 	uint8_t chain_count, rails;
@@ -38,8 +39,8 @@ struct scene {
 
 enum { EXPAND_MAX = BALL_MAX * SEQUENCE_MAX };
 
-/* The root of one pocket. */
-struct node candidate_root(const struct scene *scene, int pocket);
+/* The root of one pocket, aimed at a point of it: 0 its middle, up to +-(profile.aims - 1) / 2. */
+struct node candidate_root(const struct scene *scene, int pocket, int aim);
 
 /* All chains that are one ball longer, best effort in no order; at most capacity. Returns how many; *overflow is set when more were there. */
 int candidate_expand(const struct scene *scene, const struct node *node, struct node *child, int capacity, bool *overflow);

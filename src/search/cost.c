@@ -24,6 +24,7 @@ struct cost_profile cost_profile_thesis(void)
 		.cue_room = 0.0523,
 		.sigma_angle = 0.125 * M_PI / 180,
 		.sigma_speed = 0.05,
+		.aims = 1,
 		.program_speed = true,
 		.any_first = true,
 		.keep_flukes = true,

@@ -23,6 +23,7 @@ struct cost_profile {
 	double cue_clearance;		/* m beyond the radius beside the cue */
 	double cue_room;		/* m behind the cue ball */
 	double sigma_angle, sigma_speed;	/* player's error, rad and share of the speed (1 sigma) */
+	int aims;			/* 1: the middle of a pocket; 3, 5, ...: points across it too, for what the middle does not give */
 	bool rank_by_success;		/* false: the thesis' cost */
 	bool program_speed;		/* start speeds by 4.33 for every leg, as the thesis' program; false: both branches */
 	bool any_first;			/* do not ask which ball is struck first, as that program; false: by the rules */

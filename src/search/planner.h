@@ -25,6 +25,7 @@ struct state {
 	int32_t parent;		/* NO_STATE for a root */
 	int shots;		/* played before */
 	double cost;		/* of those */
+	uint8_t landed[BALL_MAX];	/* bit per pocket that the ball was potted into as meant */
 };
 
 /* What the simulation made of a complete node at one start speed. */

@@ -83,12 +83,14 @@ static void push_roots(struct planner *planner, int index)
 {
 	struct state *state = &planner->state[index];
 	set_scene(planner, state);
-	for (int p = 0; p < planner->def.table->pocket_count && state->scene.wanted; p++) {
-		struct node root = candidate_root(&state->scene, p);
-		root.state = (uint32_t)index;
-		root.cost = state->cost;
-		frontier_push(&planner->frontier, &root);
-	}
+	int outermost = (planner->def.profile.aims - 1) / 2;
+	for (int p = 0; p < planner->def.table->pocket_count && state->scene.wanted; p++)
+		for (int aim = -outermost; aim <= outermost; aim++) {
+			struct node root = candidate_root(&state->scene, p, aim);
+			root.state = (uint32_t)index;
+			root.cost += state->cost;
+			frontier_push(&planner->frontier, &root);
+		}
 }
 
 static void add_root_state(struct planner *planner, vec2 cue)
@@ -189,7 +191,8 @@ static bool is_cleared(const struct rules_outcome *outcome, int count)
 
 static void merge_played(struct planner *planner, const struct slot *slot, const struct played *played, bool *improved)
 {
-	const struct state *from = &planner->state[slot->node.state];
+	struct state *from = &planner->state[slot->node.state];
+	from->landed[played->record.target] |= (uint8_t)(1u << played->record.pocket);
 	int depth = planner->request->depth, shots = from->shots + 1;
 	bool last = shots == depth || is_cleared(&played->outcome, planner->ball_count);
 	struct solution solution = {from->cost + played->record.cost, (int32_t)slot->node.state, played->record};
@@ -240,6 +243,12 @@ static int batch_size(struct planner *planner)
 	return (int)(budget - used);
 }
 
+/* An aim beside a pocket's middle, for a ball that falls there anyway. */
+static bool is_spare(const struct planner *planner, const struct node *node)
+{
+	return node->aim != 0 && node->chain_count > 0 && (planner->state[node->state].landed[node->chain[0]] >> node->pocket & 1);
+}
+
 bool search_step(struct planner *planner, bool *improved)
 {
 	uint64_t budget = planner->request->budget.nodes;
@@ -251,8 +260,10 @@ bool search_step(struct planner *planner, bool *improved)
 		return false;
 	}
 	int size = batch_size(planner), count = 0;
-	while (count < size && planner->frontier.count > 0)
-		planner->slot[count++].node = frontier_pop(&planner->frontier);
+	while (count < size && planner->frontier.count > 0) {
+		planner->slot[count].node = frontier_pop(&planner->frontier);
+		count += !is_spare(planner, &planner->slot[count].node);
+	}
 	pool_for(planner->pool, count, work_on, planner);
 	for (int i = 0; i < count; i++)
 		merge(planner, &planner->slot[i], improved);
