@@ -68,17 +68,30 @@ static const char *pocket_name(const struct demo *d, int pocket)
 	return pocket >= 0 && pocket < d->config.table.pocket_count ? d->config.table.pocket[pocket].name : "?";
 }
 
+/* The name of a planned ball: that of the ball which really lies there, on the virtual table; else the plan's own. */
+static void ball_name(const struct demo *d, int ball, char *out, size_t size)
+{
+	const billiard_plan_shot_t *s = &d->plan.entries[0].shots[0];
+	vec2 at = {s->start_x[ball], s->start_y[ball]};
+	bus_text(out, size, d->plan.names[ball], sizeof d->plan.names[0]);
+	for (int i = 0; d->has_truth && i < d->truth.ball_count; i++) {
+		const billiard_ball_t *b = &d->truth.balls[i];
+		if (vec2_dist(at, (vec2){b->x, b->y}) < d->config.table.ball_radius)
+			bus_text(out, size, b->name, sizeof b->name);
+	}
+}
+
 static void describe_proposal(const struct demo *d, char *out, size_t size)
 {
 	const billiard_plan_shot_t *s = &d->plan.entries[0].shots[0];
 	char name[24] = "contact only";
 	out[0] = '\0';
 	if (s->target >= 0)
-		bus_text(name, sizeof name, d->plan.names[s->target], sizeof d->plan.names[0]);
+		ball_name(d, s->target, name, sizeof name);
 	add_text(out, size, "%s%s%s at %.1f deg, %.2f m/s, to fall:", name, s->pocket >= 0 ? " -> " : "",
 		 s->pocket >= 0 ? pocket_name(d, s->pocket) : "", s->angle * RADIAN_DEG, s->speed);
 	for (int i = 0; i < s->potted_count; i++) {
-		bus_text(name, sizeof name, d->plan.names[s->potted_ball[i]], sizeof d->plan.names[0]);
+		ball_name(d, s->potted_ball[i], name, sizeof name);
 		add_text(out, size, " %s", name);
 	}
 	if (s->potted_count == 0)
