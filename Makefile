@@ -29,7 +29,8 @@ APP := text_file shot_file colour_file cmd_calibrate config config_reader config
 # programs: src/app/main_NAME.c becomes build/NAME
 PROGRAMS := billiard billiard-vision billiard-planner billiard-infinity billiard-projector billiard-table
 # tests/test_NAME.c each; tests/NAME.c shared by them
-TESTS := config position cmd plot draw render player contact_real contact_recorded shot_file \
+TESTS := fsm stability \
+	config position cmd plot draw render player contact_real contact_recorded shot_file \
 	roots sim
 TEST_SHARED := harness poly_judge scenes
 # tests that are scripts: tests/NAME.sh, called with the build folder

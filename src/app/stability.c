@@ -141,6 +141,18 @@ static double push_apart(struct layout *layout, double distance)
 	return worst;
 }
 
+/* Moves balls over a cushion back; the farthest way. */
+static double keep_on_bed(struct layout *layout, double x_max, double y_max)
+{
+	double worst = 0;
+	for (int i = 0; i < layout->count; i++) {
+		vec2 p = layout->ball[i].pos, q = {clamp(p.x, x_max), clamp(p.y, y_max)};
+		worst = fmax(worst, vec2_dist(p, q));
+		layout->ball[i].pos = q;
+	}
+	return worst;
+}
+
 bool layout_settle(struct layout *layout, double length, double width, double radius, double max_shift)
 {
 	static const double RESIDUAL = 1e-9;	/* m of overlap that is left */
@@ -149,13 +161,10 @@ bool layout_settle(struct layout *layout, double length, double width, double ra
 	for (int round = 0; round < SETTLE_ROUNDS && worst > RESIDUAL; round++) {
 		/* A hair more than touching, so that the rounds end. */
 		worst = push_apart(layout, 2 * radius + RESIDUAL);
-		for (int i = 0; i < layout->count; i++) {
-			layout->ball[i].pos.x = clamp(layout->ball[i].pos.x, length / 2 - radius);
-			layout->ball[i].pos.y = clamp(layout->ball[i].pos.y, width / 2 - radius);
-		}
+		worst = fmax(worst, keep_on_bed(layout, length / 2 - radius, width / 2 - radius));
 	}
 	for (int i = 0; i < layout->count; i++)
 		if (vec2_dist(before.ball[i].pos, layout->ball[i].pos) > max_shift)
 			return false;
-	return true;
+	return worst <= RESIDUAL;
 }

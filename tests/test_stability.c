@@ -1,0 +1,352 @@
+#include "app/stability.h"
+
+#include <math.h>
+#include <stdio.h>
+#include <string.h>
+
+#include "harness.h"
+#include "scenes.h"
+
+enum { STILL_FRAMES = 15, FRAME_RATE = 30 };
+static const double STILL = 0.0005;	/* m */
+static struct stability s;
+
+static void setup(void)
+{
+	stability_init(&s, STILL, STILL_FRAMES);
+}
+
+/* A few balls far apart, tracked. */
+static struct layout few_balls(void)
+{
+	static const vec2 place[] = {{-0.5, 0}, {0.1, 0.2}, {0.4, -0.3}, {0.7, 0.1}, {-0.2, -0.2}};
+	struct layout layout = {.cue = -1};
+	for (int i = 0; i < (int)(sizeof place / sizeof place[0]); i++) {
+		layout.ball[i] = ball_at(i == 0 ? COLOUR_WHITE : i == 4 ? COLOUR_BLUE : COLOUR_RED, place[i]);
+		layout.track[i] = i + 1;
+		layout.count++;
+	}
+	return layout;
+}
+
+static enum stability_verdict show(const struct layout *layout, int frames)
+{
+	enum stability_verdict verdict = STABILITY_UNSURE;
+	for (int i = 0; i < frames; i++) {
+		struct layout seen = *layout;
+		verdict = stability_frame(&s, &seen, false);
+	}
+	return verdict;
+}
+
+START_TEST(rest_takes_as_many_frames_as_configured)
+{
+	struct layout layout = few_balls();
+	/* The first frame is where the quiet begins. */
+	ck_assert_int_eq(show(&layout, STILL_FRAMES), STABILITY_UNSURE);
+	ck_assert_int_eq(show(&layout, 1), STABILITY_STABLE);
+	ck_assert_int_eq(show(&layout, 100), STABILITY_STABLE);
+}
+END_TEST
+
+START_TEST(noise_below_the_limit_rests)
+{
+	struct random random = random_begin("stability noise");
+	struct layout layout = few_balls();
+	int stable = 0;
+	for (int frame = 0; frame < 2000; frame++) {
+		struct layout seen = layout;
+		for (int i = 0; i < seen.count; i++) {
+			seen.ball[i].pos.x += random_in(&random, -STILL / 3, STILL / 3);
+			seen.ball[i].pos.y += random_in(&random, -STILL / 3, STILL / 3);
+		}
+		enum stability_verdict verdict = stability_frame(&s, &seen, false);
+		ck_assert_int_ne(verdict, STABILITY_MOVING);
+		stable += verdict == STABILITY_STABLE;
+	}
+	ck_assert_int_eq(stable, 2000 - STILL_FRAMES);
+}
+END_TEST
+
+START_TEST(single_jumps_are_no_motion_but_end_the_quiet)
+{
+	struct layout layout = few_balls(), jumped = few_balls();
+	jumped.ball[2].pos.x += 0.004;
+	ck_assert_int_eq(show(&layout, STILL_FRAMES + 1), STABILITY_STABLE);
+	ck_assert_int_eq(show(&jumped, 1), STABILITY_UNSURE);
+	/* Back again is a second move in a row. */
+	ck_assert_int_eq(show(&layout, 1), STABILITY_MOVING);
+	ck_assert_int_eq(show(&layout, STILL_FRAMES - 1), STABILITY_UNSURE);
+	ck_assert_int_eq(show(&layout, 1), STABILITY_STABLE);
+}
+END_TEST
+
+/* At any speed worth the name a rolling ball never counts as resting, and a fast one counts as moving. */
+START_TEST(a_rolling_ball_is_seen)
+{
+	for (double speed = 0.0012; speed < 5; speed *= 1.3) {
+		setup();
+		struct layout layout = few_balls();
+		show(&layout, STILL_FRAMES + 1);
+		bool moved = false;
+		/* The quiet from before ends as soon as the ball has gone farther than a resting one may. */
+		int blind = (int)ceil(STILL / (speed / FRAME_RATE)) + 1;
+		for (int frame = 1; frame < 200; frame++) {
+			struct layout seen = layout;
+			seen.ball[3].pos.x -= speed * frame / FRAME_RATE;
+			enum stability_verdict verdict = stability_frame(&s, &seen, false);
+			if (frame > blind)
+				ck_assert_msg(verdict != STABILITY_STABLE, "%g m/s, frame %d", speed, frame);
+			moved = moved || verdict == STABILITY_MOVING;
+		}
+		if (speed > 2 * STILL * FRAME_RATE)
+			ck_assert_msg(moved, "%g m/s", speed);
+	}
+}
+END_TEST
+
+START_TEST(a_real_stop_becomes_rest_in_time)
+{
+	/* Rolling at 1 m/s, slowed by 0.14 m/s^2: the end of a real shot. */
+	struct layout layout = few_balls();
+	double v = 1, a = 0.14, stop = v / a;
+	int frames = (int)(stop * FRAME_RATE) + 2 * STILL_FRAMES, first = -1;
+	for (int frame = 0; frame < frames; frame++) {
+		double t = fmin((double)frame / FRAME_RATE, stop);
+		struct layout seen = layout;
+		seen.ball[0].pos.x = -0.8 + (v * t - a * t * t / 2) * 0.2;
+		if (stability_frame(&s, &seen, false) == STABILITY_STABLE && first < 0)
+			first = frame;
+	}
+	/* Not while more than the permitted distance is left, not later than the frames asked for. */
+	double t = (double)(first - STILL_FRAMES) / FRAME_RATE, left = 0.2 * (v * stop / 2 - (v * t - a * t * t / 2));
+	ck_assert_int_ge(first, 0);
+	ck_assert_double_le(left, STILL);
+	ck_assert_int_le(first, (int)ceil(stop * FRAME_RATE) + STILL_FRAMES + 1);
+}
+END_TEST
+
+START_TEST(lost_only_after_some_frames_in_a_row)
+{
+	struct layout layout = few_balls(), none = few_balls();
+	none.ball[0].colour = COLOUR_RED;
+	ck_assert_int_eq(show(&layout, STILL_FRAMES + 1), STABILITY_STABLE);
+	for (int i = 0; i < 4; i++)
+		ck_assert_int_eq(show(&none, 1), STABILITY_UNSURE);
+	ck_assert_int_eq(show(&layout, 1), STABILITY_UNSURE);
+	for (int i = 0; i < 4; i++)
+		ck_assert_int_eq(stability_frame(&s, NULL, false), STABILITY_UNSURE);
+	ck_assert_int_eq(stability_frame(&s, NULL, false), STABILITY_LOST);
+	ck_assert_int_eq(show(&none, 1), STABILITY_LOST);
+	ck_assert_int_eq(show(&layout, STILL_FRAMES - 1), STABILITY_UNSURE);
+}
+END_TEST
+
+START_TEST(an_arm_over_the_bed_is_neither_rest_nor_loss)
+{
+	struct layout layout = few_balls();
+	show(&layout, STILL_FRAMES + 1);
+	for (int i = 0; i < 50; i++) {
+		struct layout seen = layout;
+		if (i % 7 == 3) {
+			seen.ball[0] = seen.ball[--seen.count];	/* it covers the cue ball at times */
+			seen.track[0] = seen.track[seen.count];
+		}
+		ck_assert_int_eq(stability_frame(&s, &seen, true), STABILITY_UNSURE);
+	}
+	ck_assert_int_eq(show(&layout, STILL_FRAMES - 1), STABILITY_UNSURE);
+	ck_assert_int_eq(show(&layout, 2), STABILITY_STABLE);
+}
+END_TEST
+
+START_TEST(balls_that_come_and_go_end_the_quiet)
+{
+	struct layout layout = few_balls(), fewer = few_balls();
+	fewer.count--;
+	show(&layout, STILL_FRAMES + 1);
+	ck_assert_int_eq(show(&fewer, 1), STABILITY_UNSURE);
+	ck_assert_int_eq(show(&fewer, STILL_FRAMES), STABILITY_STABLE);
+	ck_assert_int_eq(show(&layout, 1), STABILITY_UNSURE);
+	ck_assert_int_eq(show(&layout, STILL_FRAMES), STABILITY_STABLE);
+}
+END_TEST
+
+START_TEST(the_order_of_balls_does_not_matter)
+{
+	struct random random = random_begin("stability order");
+	struct layout layout = few_balls();
+	enum stability_verdict verdict = STABILITY_UNSURE;
+	for (int frame = 0; frame <= STILL_FRAMES; frame++) {
+		for (int i = layout.count - 1; i > 0; i--) {
+			int j = (int)(random_u64(&random) % (unsigned)(i + 1)), track = layout.track[i];
+			struct ball ball = layout.ball[i];
+			layout.ball[i] = layout.ball[j], layout.track[i] = layout.track[j];
+			layout.ball[j] = ball, layout.track[j] = track;
+		}
+		verdict = stability_frame(&s, &layout, false);
+		ck_assert_int_eq(layout.track[layout.cue], 1);
+	}
+	ck_assert_int_eq(verdict, STABILITY_STABLE);
+}
+END_TEST
+
+START_TEST(of_two_white_balls_the_one_that_was_it_stays_it)
+{
+	struct layout layout = few_balls(), seen;
+	show(&layout, 3);
+	layout.ball[1].colour = COLOUR_WHITE;
+	seen = layout;
+	stability_frame(&s, &seen, false);
+	ck_assert_int_eq(seen.cue, 0);
+	/* In the other order, too, and when it moves on a little. */
+	seen = layout;
+	seen.ball[0] = layout.ball[1], seen.ball[1] = layout.ball[0];
+	seen.ball[1].pos.x += 0.01;
+	stability_frame(&s, &seen, false);
+	ck_assert_int_eq(seen.cue, 1);
+}
+END_TEST
+
+START_TEST(an_empty_table_is_lost)
+{
+	struct layout none = {.cue = -1};
+	ck_assert_int_eq(show(&none, 10), STABILITY_LOST);
+}
+END_TEST
+
+START_TEST(layouts_differ_by_place_colour_and_number)
+{
+	struct layout a = few_balls(), b = few_balls();
+	ck_assert(!layout_differs(&a, &b, 0.003));
+	/* Other identities and another order: the same layout. */
+	for (int i = 0; i < b.count; i++) {
+		b.ball[i] = a.ball[b.count - 1 - i];
+		b.track[i] = 100 + i;
+	}
+	ck_assert(!layout_differs(&a, &b, 0.003) && !layout_differs(&b, &a, 0.003));
+	b.ball[1].pos.x += 0.0029;
+	ck_assert(!layout_differs(&a, &b, 0.003));
+	b.ball[1].pos.x += 0.0002;
+	ck_assert(layout_differs(&a, &b, 0.003));
+	b = a;
+	b.ball[1].colour = COLOUR_PINK;
+	ck_assert(layout_differs(&a, &b, 0.003));
+	b = a;
+	b.count--;
+	ck_assert(layout_differs(&a, &b, 0.003) && layout_differs(&b, &a, 0.003));
+}
+END_TEST
+
+/* ---- settling ------------------------------------------------------------------------------------------------------- */
+
+static void check_settled(const struct layout *layout, const struct table *table, const char *what)
+{
+	double r = table->ball_radius;
+	for (int i = 0; i < layout->count; i++) {
+		vec2 p = layout->ball[i].pos;
+		ck_assert_msg(fabs(p.x) <= table->length / 2 - r && fabs(p.y) <= table->width / 2 - r, "%s: ball %d is off the bed", what, i);
+		for (int j = 0; j < i; j++) {
+			double overlap = 2 * r - vec2_dist(p, layout->ball[j].pos);
+			ck_assert_msg(overlap <= 1e-9, "%s: balls %d and %d overlap by %g m", what, i, j, overlap);
+		}
+	}
+}
+
+static void add_noise(struct layout *layout, struct random *random, double size)
+{
+	for (int i = 0; i < layout->count; i++)
+		layout->ball[i].pos = vec2_madd(layout->ball[i].pos, random_in(random, 0, size), vec2_from_angle(random_in(random, 0, 6.2832)));
+}
+
+START_TEST(what_does_not_overlap_stays)
+{
+	struct table table = scene_thesis_table();
+	struct layout layout = few_balls(), before = few_balls();
+	ck_assert(layout_settle(&layout, table.length, table.width, table.ball_radius, 0.006));
+	for (int i = 0; i < layout.count; i++)
+		ck_assert(layout.ball[i].pos.x == before.ball[i].pos.x && layout.ball[i].pos.y == before.ball[i].pos.y);
+}
+END_TEST
+
+/* The hard case: fifteen touching reds as a camera sees them. */
+START_TEST(a_rack_seen_by_a_camera_settles)
+{
+	struct table tables[] = {scene_thesis_table(), scene_snooker_table()};
+	struct random random = random_begin("stability rack");
+	for (int round = 0; round < 400; round++) {
+		const struct table *table = &tables[round % 2];
+		struct layout layout = {.count = SCENE_RACK_COUNT, .cue = 0}, before;
+		scene_rack(table, layout.ball);
+		add_noise(&layout, &random, round < 200 ? 0.0007 : 0.0015);
+		before = layout;
+		bool settled = layout_settle(&layout, table->length, table->width, table->ball_radius, 0.006);
+		ck_assert(settled);
+		check_settled(&layout, table, "rack");
+		double shift = 0;
+		for (int i = 0; i < layout.count; i++)
+			shift = fmax(shift, vec2_dist(layout.ball[i].pos, before.ball[i].pos));
+		ck_assert_double_le(shift, 0.006);
+	}
+}
+END_TEST
+
+START_TEST(balls_in_corners_and_along_cushions_settle)
+{
+	struct table table = scene_thesis_table();
+	struct random random = random_begin("stability cushions");
+	double x = table.length / 2 - table.ball_radius, y = table.width / 2 - table.ball_radius, d = 2 * table.ball_radius;
+	for (int round = 0; round < 500; round++) {
+		struct layout layout = {.count = 6, .cue = 0, .ball = {
+			ball_at(COLOUR_WHITE, (vec2){x, y}), ball_at(COLOUR_RED, (vec2){x - d, y}), ball_at(COLOUR_RED, (vec2){x, y - d}),
+			ball_at(COLOUR_RED, (vec2){-x, 0}), ball_at(COLOUR_RED, (vec2){-x, d}), ball_at(COLOUR_RED, (vec2){-x + 0.87 * d, d / 2}),
+		}};
+		add_noise(&layout, &random, 0.002);
+		ck_assert(layout_settle(&layout, table.length, table.width, table.ball_radius, 0.012));
+		check_settled(&layout, &table, "corner");
+	}
+}
+END_TEST
+
+START_TEST(what_cannot_be_settled_is_said)
+{
+	struct table table = scene_thesis_table();
+	struct layout layout = few_balls();
+	layout.ball[1].pos = layout.ball[2].pos;
+	ck_assert(!layout_settle(&layout, table.length, table.width, table.ball_radius, 0.006));
+	layout = few_balls();
+	layout.ball[1].pos.y = 0.6;
+	ck_assert(!layout_settle(&layout, table.length, table.width, table.ball_radius, 0.006));
+	/* More balls than a box has room for. */
+	struct layout full = {.count = 22, .cue = 0};
+	for (int i = 0; i < 22; i++)
+		full.ball[i] = ball_at(COLOUR_RED, (vec2){0.001 * i, 0});
+	ck_assert(!layout_settle(&full, 0.16, 0.16, table.ball_radius, 10));
+}
+END_TEST
+
+Suite *test_suite(void)
+{
+	Suite *suite = suite_create("stability");
+	TCase *frames = tcase_create("frames");
+	tcase_add_checked_fixture(frames, setup, NULL);
+	tcase_add_test(frames, rest_takes_as_many_frames_as_configured);
+	tcase_add_test(frames, noise_below_the_limit_rests);
+	tcase_add_test(frames, single_jumps_are_no_motion_but_end_the_quiet);
+	tcase_add_test(frames, a_rolling_ball_is_seen);
+	tcase_add_test(frames, a_real_stop_becomes_rest_in_time);
+	tcase_add_test(frames, lost_only_after_some_frames_in_a_row);
+	tcase_add_test(frames, an_arm_over_the_bed_is_neither_rest_nor_loss);
+	tcase_add_test(frames, balls_that_come_and_go_end_the_quiet);
+	tcase_add_test(frames, the_order_of_balls_does_not_matter);
+	tcase_add_test(frames, of_two_white_balls_the_one_that_was_it_stays_it);
+	tcase_add_test(frames, an_empty_table_is_lost);
+	suite_add_tcase(suite, frames);
+	TCase *layouts = tcase_create("layouts");
+	tcase_add_test(layouts, layouts_differ_by_place_colour_and_number);
+	tcase_add_test(layouts, what_does_not_overlap_stays);
+	tcase_add_test(layouts, a_rack_seen_by_a_camera_settles);
+	tcase_add_test(layouts, balls_in_corners_and_along_cushions_settle);
+	tcase_add_test(layouts, what_cannot_be_settled_is_said);
+	suite_add_tcase(suite, layouts);
+	return suite;
+}
