@@ -30,7 +30,7 @@ APP := text_file shot_file colour_file cmd_calibrate config config_reader config
 PROGRAMS := billiard billiard-vision billiard-planner billiard-infinity billiard-projector billiard-table
 # tests/test_NAME.c each; tests/NAME.c shared by them
 TESTS := fsm stability \
-	config position cmd plot draw render player contact_real contact_recorded shot_file \
+	config position cmd plot draw render player table_camera contact_real contact_recorded shot_file \
 	roots sim
 TEST_SHARED := harness poly_judge scenes
 # tests that are scripts: tests/NAME.sh, called with the build folder

@@ -10,12 +10,13 @@
 /* The thesis' rings are 1.9 R wide; that touches what the camera sees of a ball in the corners, which stand out to 1.97 R from its foot. */
 static const double HALO = 2.2;		/* radii */
 static const double GHOST = 1.0;	/* radii */
-static const double POCKET = 1.12;	/* pocket radii */
+static const double POCKET = 1.6;	/* pocket radii: outside the hole, inside the markers on the rails */
 static const double LINE = 0.005, THIN = 0.004;	/* m */
 static const double TEXT_HEIGHT = 0.055, POCKET_HEIGHT = 0.04, INFO_HEIGHT = 0.024;	/* m */
 static const double TEXT_REACH = 10, POCKET_REACH = 0.6, INFO_REACH = 0.2;	/* m */
 /* Left free for the text by the paths of the other balls. */
 enum { ITEMS_KEPT = 4, POINTS_KEPT = 8 };
+enum { POCKET_POINTS = 49 };
 
 static const uint32_t HALO_RGBA = 0xc0ffffff, GHOST_RGBA = 0xffffffff, CUE_RGBA = 0xffffffff, TABLE_RGBA = 0x80c0ffff,
 		      TEXT_RGBA = 0xe0ffffff, INFO_RGBA = 0xa0e0e0ff;
@@ -151,14 +152,28 @@ static void draw_paths(const struct scene *scene)
 			draw_object(scene, i, true);
 }
 
+/* The part of a ring around the pocket that lies on the bed: light on the rails would disturb the markers. */
+static void draw_pocket_arc(const struct scene *scene, const struct pocket *pocket, const struct draw_pen *pen)
+{
+	vec2 arc[POCKET_POINTS];
+	int count = 0;
+	/* from the side that looks away from the bed, so that what lies on the bed is one piece */
+	double begin = atan2(-pocket->normal.y, -pocket->normal.x);
+	for (int i = 0; i < POCKET_POINTS; i++) {
+		vec2 p = vec2_madd(pocket->centre, POCKET * pocket->radius, vec2_from_angle(begin + i * 2 * acos(-1) / (POCKET_POINTS - 1)));
+		if (fabs(p.x) < scene->table->length / 2 && fabs(p.y) < scene->table->width / 2)
+			arc[count++] = p;
+	}
+	stroke(scene, arc, count, pen);
+}
+
 static void draw_pocket(const struct scene *scene)
 {
 	int pocket = scene->shot->pocket, target = scene->shot->target;
 	if (pocket < 0 || pocket >= scene->table->pocket_count)
 		return;
 	uint32_t rgba = ball_lies(scene, target) ? draw_ball_rgba(scene->plan->colours[target]) : GHOST_RGBA;
-	const struct pocket *p = &scene->table->pocket[pocket];
-	draw_field_ring(&scene->field, scene->list, p->centre, POCKET * p->radius, &(struct draw_pen){2 * LINE, rgba, false});
+	draw_pocket_arc(scene, &scene->table->pocket[pocket], &(struct draw_pen){2 * LINE, rgba, false});
 }
 
 /* The speed where the player looks, at the cue ball; the pocket's name at the pocket. */
