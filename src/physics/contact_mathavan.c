@@ -70,24 +70,35 @@ static vec2 slip_direction(const struct impact *im, const double z[DIM], enum pl
 	return begins || n == 0 ? im->onset[place] : vec2_scale(slip, 1 / n);
 }
 
-/* Friction at both places. Where the nose sticks it depends on the cloth's and, through the load, the cloth's on it: a
- * contraction, repeated to rounding. */
+/* Nose friction that holds the slip there while the cloth slips in direction q: the cloth's friction depends on the
+ * load and so on the nose's, two linear equations. */
+static vec2 holding_over_slip(const struct impact *im, vec2 q)
+{
+	double s = im->s, c = im->c, give = (2.5 - s) / (2.5 + s * s), mu = im->mu[CLOTH];
+	double up = (give * mu * s * q.y - s * c / (2.5 + s * s)) / (1 + give * mu * c * q.y);
+	struct friction f = {{0, up}, {0, 0}};
+	f.cloth = vec2_scale(q, -most_friction(im, CLOTH, &f));
+	return holding_friction(im, NOSE, &f);
+}
+
+/* The same while the cloth sticks too. */
+static vec2 holding_both(const struct impact *im)
+{
+	double s = im->s, c = im->c;
+	return (vec2){0, -(3.5 * s * c + (2.5 - s) * c) / (3.5 * (2.5 + s * s) - (2.5 - s) * (2.5 - s))};
+}
+
+/* Friction at both places. */
 static struct friction friction_at(const struct impact *im, const double z[DIM])
 {
 	struct friction f = {{0, 0}, {0, 0}};
 	vec2 q = slip_direction(im, z, CLOTH);
 	if (!im->stick[NOSE])
 		f.nose = vec2_scale(slip_direction(im, z, NOSE), -im->mu[NOSE]);
-	for (int i = 0; i < 60; i++) {
-		vec2 before = f.nose;
-		double most = most_friction(im, CLOTH, &f);
-		f.cloth = im->stick[CLOTH] ? clamp_length(holding_friction(im, CLOTH, &f), most) : vec2_scale(q, -most);
-		if (!im->stick[NOSE])
-			break;
-		f.nose = clamp_length(holding_friction(im, NOSE, &f), im->mu[NOSE]);
-		if (vec2_dist(before, f.nose) <= 1e-15)
-			break;
-	}
+	else
+		f.nose = clamp_length(im->stick[CLOTH] ? holding_both(im) : holding_over_slip(im, q), im->mu[NOSE]);
+	double most = most_friction(im, CLOTH, &f);
+	f.cloth = im->stick[CLOTH] ? clamp_length(holding_friction(im, CLOTH, &f), most) : vec2_scale(q, -most);
 	return f;
 }
 
@@ -219,8 +230,9 @@ static void solve_stage(const struct impact *im, double h, double inverse[SLIPS]
 	k[WORK] = GAMMA * h * (right[WORK] + im->c * velocity_into(im, k));
 }
 
-/* One step of h; fills z and returns the estimated error in m/s. */
-static double step(const struct impact *im, double h, double j[SLIPS][SLIPS], double z[DIM])
+/* One step of h from im, where the derivative is rates and its Jacobian j; fills z and returns the estimated error in
+ * m/s. */
+static double step(const struct impact *im, double h, const double rates[DIM], double j[SLIPS][SLIPS], double z[DIM])
 {
 	double matrix[SLIPS][SLIPS], inverse[SLIPS][SLIPS], k[6][DIM];
 	for (int i = 0; i < SLIPS; i++)
@@ -236,7 +248,10 @@ static double step(const struct impact *im, double h, double j[SLIPS][SLIPS], do
 			for (int l = 0; l < stage && stage < 5; l++)
 				z[i] += STAGE[stage][l] * k[l][i];
 		}
-		derivative(im, z, right);
+		if (stage > 0)
+			derivative(im, z, right);
+		for (int i = 0; i < DIM && stage == 0; i++)
+			right[i] = rates[i];
 		for (int i = 0; i < DIM; i++)
 			for (int l = 0; l < stage; l++)
 				right[i] += COUPLE[stage][l] / h * k[l][i];
@@ -317,7 +332,7 @@ static double impulse_left(const struct impact *im, double target, const double 
 
 /* Shares of the speed before. Error estimate allowed a step: the result is good to about ten times less. A slip that
  * counts as none. Reached only where friction wedges the ball in for good: STEPS_MAX. */
-static const double TOLERANCE = 1e-7, REST_SLIP = 1e-6;
+static const double TOLERANCE = 1e-6, REST_SLIP = 1e-5;
 enum { STEPS_MAX = 2000 };
 
 /* Integrates to the end of a phase; scale: speed before, m/s. */
@@ -333,7 +348,7 @@ static void integrate(struct impact *im, double target, double scale)
 			return;
 		jacobian(im, j);
 		h = fmin(fmin(h, slip_limit(im, rates)), left);
-		double error = step(im, h, j, z);
+		double error = step(im, h, rates, j, z);
 		for (int i = 0; i < DIM && error <= TOLERANCE * scale; i++)
 			im->z[i] = z[i];
 		h *= fmin(5, fmax(0.2, 0.85 * sqrt(sqrt(TOLERANCE * scale / fmax(error, 1e-300)))));

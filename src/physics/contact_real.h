@@ -22,7 +22,7 @@ void contact_cushion_stronge(const struct table *table, vec2 normal, double nose
 /* Impact on a cushion nose at nose_height (m, 0 to 2 r), pressing the ball on the cloth (Mathavan, Jackson, Parkin
  * 2010): normal impulse integrated with friction at nose (mu_cushion) and cloth (mu_slide), restitution e_cushion of
  * the work done at the nose. Sticking at either contact is part of the law and handled as a mode of its own. The
- * integration leaves an error below 1e-5 of the speed before (surface speed of the spin included). Precondition: the
+ * integration leaves an error below 1e-4 of the speed before (surface speed of the spin included). Precondition: the
  * ball approaches. */
 void contact_cushion_mathavan(const struct table *table, vec2 normal, double nose_height, struct ball *ball);
 
