@@ -1,4 +1,4 @@
-/* billiard-table: a virtual table in place of camera, table and player. CAMERA and TRUTH out; DRAW is its light, PLAN what its player plays. */
+/* billiard-table: a virtual table in place of camera, table and player. CAMERA and TRUTH out; DRAW and ANIMATION are its light, PLAN what its player plays. */
 #include <errno.h>
 #include <stdio.h>
 #include <stdlib.h>
@@ -23,6 +23,9 @@ struct virtual_process {
 	struct byte_buffer jpeg;
 	char name[BALL_MAX][BALL_NAME_SIZE];
 	billiard_draw_list_t list;
+	billiard_animation_t animation;
+	double animation_begin;			/* s, when the animation stood at its position */
+	bool lit;				/* the camera has the light of list; false: draw it anew */
 	billiard_plan_t plan;
 	int64_t wanted_id;			/* proposal on the table that was not played yet, 0 none */
 	double wanted_at;			/* s, when it was first seen there */
@@ -88,6 +91,20 @@ static void play_wanted(struct virtual_process *p, double now)
 		process_error(&p->process, "shot refused: %s", err);
 }
 
+/* The projector's light as it is now. A standing picture is drawn once, a running animation each frame. */
+static void light(struct virtual_process *p, double now)
+{
+	bool animated = p->animation.keyframe_count > 0;
+	if (p->lit && !(animated && p->animation.run))
+		return;
+	double t = plan_message_animation_time(&p->animation, now - p->animation_begin);
+	int width, height, stride;
+	render_draw(p->render, &p->list, animated ? &p->animation : NULL, t);
+	const uint32_t *pixels = render_pixels(p->render, &width, &height, &stride);
+	table_camera_light(p->camera, pixels, width, height, stride);
+	p->lit = true;
+}
+
 static int on_frame(sd_event_source *source, uint64_t usec, void *context)
 {
 	(void)source, (void)usec;
@@ -100,6 +117,7 @@ static int on_frame(sd_event_source *source, uint64_t usec, void *context)
 		end_shot(p, utime, now);
 	else
 		publish_truth(p, utime, now, false);
+	light(p, now);
 	publish_frame(p, utime, now);
 	p->work = process_seconds(NULL) - now;
 	return 0;
@@ -129,10 +147,22 @@ static bool on_draw(void *context, const void *message)
 	if (same_picture(&p->list, list))
 		return true;
 	p->list = *list;
-	render_draw(p->render, &p->list, NULL, 0);
-	int width, height, stride;
-	const uint32_t *pixels = render_pixels(p->render, &width, &height, &stride);
-	table_camera_light(p->camera, pixels, width, height, stride);
+	p->lit = false;
+	return true;
+}
+
+static bool on_animation(void *context, const void *message)
+{
+	struct virtual_process *p = context;
+	const billiard_animation_t *animation = message;
+	if (!plan_message_animation_check(animation))
+		return false;
+	/* Repeated each second: the same again must not start it anew. */
+	if (animation->utime == p->animation.utime && plan_message_same_motion(animation, &p->animation))
+		return true;
+	p->animation = *animation;
+	p->animation_begin = process_seconds(NULL);
+	p->lit = false;
 	return true;
 }
 
@@ -214,6 +244,7 @@ static int setup(struct virtual_process *p, const struct process_options *option
 	uint64_t period = (uint64_t)(1e6 / p->config.virtual_table.frame_rate);
 	if ((r = create_parts(p, options, err, sizeof err)) < 0 ||
 	    (r = bus_subscribe(p->process.bus, "DRAW", &bus_draw_list, BUS_LATEST, on_draw, p)) < 0 ||
+	    (r = bus_subscribe(p->process.bus, "ANIMATION", &bus_animation, BUS_LATEST, on_animation, p)) < 0 ||
 	    (r = bus_subscribe(p->process.bus, "PLAN", &bus_plan, BUS_LATEST, on_plan, p)) < 0 ||
 	    (r = process_every(&p->process, period, on_frame, p)) < 0) {
 		fprintf(stderr, "billiard-table: %s\n", err[0] ? err : strerror(-r));
