@@ -7,7 +7,7 @@
 static const double CUSHION_WIDTH = 0.036, RAIL_WIDTH = 0.075;
 static const double HOLE_MORE = 0.006, CASTING_MORE = 0.016;	/* beyond a pocket's radius */
 static const double CORNER_ALONG = 0.052, CORNER_ACROSS = 0.032;	/* casting of a corner, from the noses' corner */
-static const double MOUTH_REACH = 0.11;	/* of a pocket's mouth from its centre */
+static const double MOUTH_REACH = 0.15;	/* of a pocket's mouth from its centre, at most */
 static const double MARKER_BORDER = 0.22;	/* white paper around a marker, in sides */
 static const double DIAMOND = 0.0045;
 static const double LINE_HALF = 0.0006, LINE_FADE = 0.0014;	/* baulk line and D */
@@ -21,30 +21,6 @@ static const float COLOURS[][3] = {
 
 /* ---- places ---- */
 
-static vec2 pocket_side(vec2 a, vec2 b, vec2 pocket)
-{
-	vec2 n = vec2_perp(vec2_unit(vec2_sub(b, a)));
-	return vec2_dot(n, vec2_sub(pocket, a)) < 0 ? vec2_scale(n, -1) : n;
-}
-
-static void find_jaws(struct table_scene *scene)
-{
-	const struct table *table = scene->table;
-	for (int i = 0; i < table->cushion_count; i++) {
-		const struct cushion *c = &table->cushion[i];
-		if (c->main_rail)
-			continue;
-		vec2 middle = vec2_scale(vec2_add(c->a, c->b), 0.5);
-		for (int p = 0; p < table->pocket_count; p++) {
-			if (scene->jaw_count[p] == 2 || vec2_dist(middle, table->pocket[p].centre) > MOUTH_REACH)
-				continue;
-			int k = scene->jaw_count[p]++;
-			scene->jaw[p][k].at = c->a;
-			scene->jaw[p][k].normal = pocket_side(c->a, c->b, table->pocket[p].centre);
-		}
-	}
-}
-
 int table_scene_init(struct table_scene *scene, const struct table *table, const struct marker_layout *markers,
 		     const double eye[3], char *err, size_t err_size)
 {
@@ -57,7 +33,6 @@ int table_scene_init(struct table_scene *scene, const struct table *table, const
 			 markers->marker[i].id, markers->dictionary_count, markers->dictionary_bits);
 		return -EINVAL;
 	}
-	find_jaws(scene);
 	return 0;
 }
 
@@ -74,15 +49,28 @@ static double outside(const struct table *table, vec2 p)
 	return fmax(fabs(p.x) - table->length / 2, fabs(p.y) - table->width / 2);
 }
 
-static bool in_mouth(const struct table_scene *scene, int pocket, vec2 p)
+/* Do the segments a..b and c..d cross? */
+static bool segments_cross(vec2 a, vec2 b, vec2 c, vec2 d)
 {
-	if (scene->jaw_count[pocket] < 2)
+	vec2 ab = vec2_sub(b, a), cd = vec2_sub(d, c);
+	double c_side = vec2_cross(ab, vec2_sub(c, a)), d_side = vec2_cross(ab, vec2_sub(d, a));
+	double a_side = vec2_cross(cd, vec2_sub(a, c)), b_side = vec2_cross(cd, vec2_sub(b, c));
+	return (c_side > 0) != (d_side > 0) && (a_side > 0) != (b_side > 0);
+}
+
+/* Cloth between the jaws: from there the pocket's middle is in sight past all cushions. */
+static bool in_mouth(const struct table *table, const struct pocket *pocket, vec2 p)
+{
+	vec2 from = vec2_sub(p, pocket->centre);
+	if (vec2_dot(from, pocket->normal) <= 0 || vec2_norm(from) > MOUTH_REACH)
 		return false;
-	for (int k = 0; k < 2; k++)
-		if (vec2_dot(vec2_sub(p, scene->jaw[pocket][k].at), scene->jaw[pocket][k].normal) < 0)
+	for (int i = 0; i < table->jaw_count; i++)
+		if (vec2_dist(p, table->jaw[i].centre) < table->jaw[i].radius)
 			return false;
-	vec2 from = vec2_sub(p, scene->table->pocket[pocket].centre);
-	return vec2_dot(from, scene->table->pocket[pocket].normal) > 0 && vec2_norm(from) < MOUTH_REACH;
+	for (int i = 0; i < table->cushion_count; i++)
+		if (segments_cross(p, pocket->centre, table->cushion[i].a, table->cushion[i].b))
+			return false;
+	return true;
 }
 
 static bool in_corner_casting(const struct table *table, vec2 p)
@@ -132,7 +120,7 @@ static enum surface at_pocket(const struct table_scene *scene, vec2 bed, vec2 to
 		double hole = pocket->radius + HOLE_MORE;
 		if (vec2_dist(bed, pocket->centre) < hole || (over && vec2_dist(top, pocket->centre) < hole))
 			return SURFACE_HOLE;
-		if (over && in_mouth(scene, i, top))
+		if (over && in_mouth(table, pocket, top))
 			return SURFACE_UNDER_NOSE;
 		if (over && vec2_dist(top, pocket->centre) < pocket->radius + CASTING_MORE)
 			return SURFACE_CASTING;

@@ -24,9 +24,6 @@ struct table_scene {
 	uint8_t bits[MARKER_MAX][MARKER_BITS_MAX * MARKER_BITS_MAX];
 	double rail_height;		/* m: cushions, rails and markers are one plane */
 	double eye[3];			/* m, the camera's centre */
-	/* the two cushions that form each pocket's mouth: a point on each and its normal into the mouth; count may be below 2 */
-	struct { vec2 at, normal; } jaw[POCKET_MAX][2];
-	int jaw_count[POCKET_MAX];
 };
 
 /* 0, or -EINVAL with the reason when a marker is not in its dictionary. */
