@@ -29,8 +29,9 @@ APP := text_file shot_file colour_file cmd_calibrate config config_reader config
 # programs: src/app/main_NAME.c becomes build/NAME
 PROGRAMS := billiard billiard-vision billiard-planner billiard-infinity billiard-projector billiard-table
 # tests/test_NAME.c each; tests/NAME.c shared by them
-TESTS := fsm stability \
+TESTS := fsm stability plan_message \
 	config position cmd plot draw render player table_camera contact_real contact_recorded shot_file \
+	rules cost geometry frontier pool \
 	roots sim
 TEST_SHARED := harness poly_judge scenes
 # tests that are scripts: tests/NAME.sh, called with the build folder
@@ -39,7 +40,7 @@ TEST_SCRIPTS := cli
 BENCHES := physics
 BENCH_SHARED := report
 # fuzz/fuzz_NAME.c each, seeds in fuzz/corpus/NAME
-FUZZERS := position config shot_file
+FUZZERS := position config shot_file colours image
 FUZZ_SECONDS ?= 20
 LCM_TYPES := animation_t ball_t command_t draw_list_t draw_item_t image_t keyframe_t plan_t plan_entry_t plan_shot_t \
 	plan_request_t status_t metric_t table_state_t
