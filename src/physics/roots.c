@@ -49,14 +49,16 @@ struct quartic {
 	double c0, c1, c2, c3, c4;
 };
 
+/* Value and slope by pairs of terms (Estrin): the sums run side by side. */
 static inline double value(const struct quartic *q, double s)
 {
-	return q->c0 + s * (q->c1 + s * (q->c2 + s * (q->c3 + s * q->c4)));
+	double s2 = s * s;
+	return (q->c0 + s * q->c1) + s2 * ((q->c2 + s * q->c3) + s2 * q->c4);
 }
 
 static inline double slope(const struct quartic *q, double s)
 {
-	return q->c1 + s * (2 * q->c2 + s * (3 * q->c3 + s * (4 * q->c4)));
+	return (q->c1 + s * (2 * q->c2)) + s * s * (3 * q->c3 + s * (4 * q->c4));
 }
 
 /* The Bernstein coefficients bound the polynomial: all positive, no root. */
@@ -79,6 +81,8 @@ static inline bool falls_at_start(const struct quartic *q)
 }
 
 enum { NEWTON_MAX = 200 };
+/* Two units in the last place: nearer to a root is not to be had. */
+static const double CLOSE = 4.5e-16;
 
 /* Rising from a root at 0: the same entries without that root. */
 static void divide_by_start(struct quartic *q)
@@ -97,24 +101,68 @@ static double last_step(double s, double v, double d, double low, double high)
 	return next < low ? low : next > high ? high : next;
 }
 
-/* Convex piece: tangents lie below the curve, so steps from the left never pass the first root. A double root halves the
- * distance each time: some 30 steps resolve it to rounding. Returns -1 when there is no entry. */
+/* Half the curvature. */
+static inline double bend(const struct quartic *q, double s)
+{
+	return q->c2 + s * (3 * q->c3 + s * (6 * q->c4));
+}
+
+/* The least half curvature between low and high; at least 0 in a convex piece. */
+static double least_bend(const struct quartic *q, double low, double high)
+{
+	double a = bend(q, low), b = bend(q, high), least = a < b ? a : b;
+	if (q->c4 > 0) {
+		double vertex = -q->c3 / (4 * q->c4);
+		if (vertex > low && vertex < high)
+			least = bend(q, vertex);
+	}
+	return least > 0 ? least : 0;
+}
+
+/* From a point above zero in a convex piece: the parabola with the least curvature of what is left lies below the curve, so
+ * its root is not past the first root of the polynomial, and where it has none, neither has the piece: -1. */
+static double safe_step(const struct quartic *q, double s, double right)
+{
+	double v = value(q, s), d = slope(q, s);
+	double disc = d * d - 4 * least_bend(q, s, right) * v;
+	if (disc < 0 || d >= 0)
+		return -1;
+	double next = s + 2 * v / (sqrt(disc) - d);
+	return next <= right ? next : -1;
+}
+
+/* Convex piece: at most one falling root. Steps to the root of the osculating parabola converge with the third order but may
+ * pass the root, or find none; whenever one leads out of the falling part, a safe step is taken from the last point above
+ * zero instead. Returns -1 when there is no entry. */
 static double convex_entry(const struct quartic *q, double left, double right)
 {
-	double s = left, before = left;
+	double s = left, low = left;
+	bool safe = true;
 	for (int i = 0; i < NEWTON_MAX; i++) {
 		double v = value(q, s), d = slope(q, s);
-		if (d >= 0)
-			return -1;
-		if (v <= 0)
-			return last_step(s, v, d, before, s);
-		double next = s - v / d;
-		if (next > right)
-			return -1;
-		if (next == s)
+		if (d < 0 && v <= 0 && safe)
 			return s;
-		before = s;
+		if (d >= 0 && safe)
+			return -1;
+		if (d < 0) {
+			double disc = d * d - 4 * bend(q, s) * v;
+			low = v > 0 ? s : low;
+			double root = sqrt(disc), step = 2 * v / (root - d), next = s + step;
+			if (disc > 0 && next >= low && next <= right) {
+				/* what the parabola leaves out, over its slope at the root */
+				double cubic = fabs(q->c3 + 4 * q->c4 * s) + fabs(q->c4 * step);
+				if (cubic * fabs(step * step * step) <= CLOSE * next * root)
+					return next;
+				s = next;
+				safe = false;
+				continue;
+			}
+		}
+		double next = safe_step(q, low, right);
+		if (next < 0 || next == low)
+			return next;
 		s = next;
+		safe = true;
 	}
 	return s;
 }
@@ -147,7 +195,12 @@ static double concave_entry(const struct quartic *q, double left, double right)
 static int piece_ends(const struct quartic *q, double end[3])
 {
 	double root[2];
-	int count = 0, n = roots_quadratic(6 * q->c4, 3 * q->c3, q->c2, root);
+	int count = 0;
+	if (q->c2 >= 0 && q->c2 + 1.5 * q->c3 >= 0 && q->c2 + 3 * q->c3 + 6 * q->c4 >= 0) {
+		end[0] = 1; /* the hull of the curvature: convex throughout */
+		return 1;
+	}
+	int n = roots_quadratic(6 * q->c4, 3 * q->c3, q->c2, root);
 	for (int i = 0; i < n; i++) {
 		if (root[i] > 0 && root[i] < 1)
 			end[count++] = root[i];
@@ -171,7 +224,7 @@ double roots_quartic_entry(const double c[5], double horizon)
 	int pieces = piece_ends(&q, end);
 	for (int i = 0; i < pieces; i++) {
 		double middle = 0.5 * (left + end[i]);
-		bool convex = q.c2 + middle * (3 * q.c3 + middle * 6 * q.c4) >= 0;
+		bool convex = bend(&q, middle) >= 0;
 		double s = convex ? convex_entry(&q, left, end[i]) : concave_entry(&q, left, end[i]);
 		if (s >= 0)
 			return s * horizon;
