@@ -18,7 +18,8 @@ int frontier_init(struct frontier *frontier, size_t bytes)
 		frontier_finish(frontier);
 		return -ENOMEM;
 	}
-	frontier_clear(frontier);
+	for (uint32_t i = 0; i < frontier->capacity; i++)
+		frontier->free_slot[i] = i;
 	return 0;
 }
 
@@ -33,8 +34,8 @@ void frontier_finish(struct frontier *frontier)
 /* Slots are handed out from the free list: free_slot[count..] are free. */
 void frontier_clear(struct frontier *frontier)
 {
-	for (uint32_t i = 0; i < frontier->capacity; i++)
-		frontier->free_slot[i] = i;
+	for (uint32_t i = 0; i < frontier->count; i++)
+		frontier->free_slot[i] = frontier->heap[i].slot;
 	frontier->count = 0;
 	frontier->order = 0;
 	frontier->overflow = false;

@@ -13,6 +13,8 @@ enum {
 	SPEEDS_MAX = 32,		/* start speeds of one candidate */
 	CHILDREN_MAX = 2048,	/* of one expansion */
 	STATES_MAX = 2048,
+	AIMS_MAX = 9,			/* points of a pocket aimed at */
+	ROOTS_MAX = POCKET_MAX * AIMS_MAX,
 	NO_STATE = -1
 };
 
@@ -25,7 +27,8 @@ struct state {
 	int32_t parent;		/* NO_STATE for a root */
 	int shots;		/* played before */
 	double cost;		/* of those */
-	uint8_t landed[BALL_MAX];	/* bit per pocket that the ball was potted into as meant */
+	uint64_t key;		/* of the shots before, whichever worker found them; 0 for a root */
+	_Atomic uint8_t landed[BALL_MAX];	/* bit per pocket that the ball was potted into as meant */
 };
 
 /* What the simulation made of a complete node at one start speed. */
@@ -48,6 +51,7 @@ struct slot {
 /* A sequence of shots: all but the last are found by going up from state. */
 struct solution {
 	double cost;
+	uint64_t key;		/* decides among equal costs: the same whatever was found first */
 	int32_t state;
 	struct record last;
 };
@@ -82,6 +86,7 @@ struct planner {
 void search_begin(struct planner *planner);
 /* Works on the best open nodes once. False when there is nothing left to do. *improved: a better best plan. */
 bool search_step(struct planner *planner, bool *improved);
+bool search_is_cancelled(const struct planner *planner);
 /* True when cancelled or out of time. */
 bool search_is_over(const struct planner *planner);
 
@@ -92,6 +97,19 @@ void slot_play(const struct planner *planner, struct slot *slot, struct workspac
 bool shot_refine(const struct planner *planner, struct slot *slot, struct workspace *work, struct record *record,
 		 struct rules_outcome *outcome);
 
+/* Works on slot->node: expands or plays it. */
+void slot_work(const struct planner *planner, struct slot *slot, struct workspace *work);
+/* True when the node may be left out: an aim beside a pocket's middle, for a ball that falls there anyway. */
+bool node_is_spare(const struct planner *planner, const struct node *node);
+/* Makes a state ready to be searched and fills root with its first nodes. Returns how many. */
+int state_roots(const struct planner *planner, int index, struct node root[ROOTS_MAX]);
+/* Nothing on the table is left to play for. */
+bool outcome_is_cleared(const struct rules_outcome *outcome, int count);
+/* The position that a shot from parent leads to; without its scene. */
+void state_set(struct state *state, const struct planner *planner, const struct solution *shot, const struct rules_outcome *outcome);
+
+/* The sequence that ends with record, played from a state. */
+struct solution solution_make(const struct planner *planner, uint32_t state, const struct record *record);
 /* Sorted insertion; false when it is not among the limit best. */
 bool solutions_add(struct solutions *solutions, const struct solution *solution);
 /* The rank-th best. */

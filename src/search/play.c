@@ -54,7 +54,7 @@ void slot_play(const struct planner *planner, struct slot *slot, struct workspac
 {
 	const struct cost_profile *profile = &planner->def.profile;
 	int speeds = planner->request->speeds < SPEEDS_MAX ? planner->request->speeds : SPEEDS_MAX;
-	for (int i = 0; i < speeds; i++) {
+	for (int i = 0; i < speeds && !search_is_over(planner); i++) {
 		struct played *played = &slot->played[slot->played_count];
 		struct record *record = &played->record;
 		begin_record(&slot->node, record);

@@ -98,6 +98,8 @@ static struct miss aim_and_look(struct aiming *aiming, double angle)
 {
 	const struct planner *planner = aiming->planner;
 	const struct state *state = &planner->state[aiming->slot->node.state];
+	if (search_is_over(planner))
+		return (struct miss){.stage = -1};
 	aiming->record->shot.angle = angle;
 	aiming->slot->sims++;
 	if (!shot_play(aiming->work, planner->def.table, &planner->def.model, state->ball, planner->ball_count, &state->rules,

@@ -107,7 +107,7 @@ static bool play(struct planner *planner, const struct aim *aim, struct record *
 
 static void keep(struct planner *planner, const struct aim *aim, const struct record *record)
 {
-	struct solution solution = {record->cost, aim->state, *record};
+	struct solution solution = solution_make(planner, aim->state, record);
 	solutions_add(&planner->solutions[0], &solution);
 }
 
@@ -117,7 +117,7 @@ static bool fan_find(struct planner *planner)
 	struct record best, record;
 	struct aim aim = {.cost = 10, .ball = -1}, best_aim = aim;
 	int best_foul = 1000;
-	for (int i = 0; i < FAN_SPEEDS * FAN_ANGLES && best_foul > 0 && (best_foul == 1000 || !search_is_over(planner)); i++) {
+	for (int i = 0; i < FAN_SPEEDS * FAN_ANGLES && best_foul > 0 && !search_is_cancelled(planner) && (best_foul == 1000 || !search_is_over(planner)); i++) {
 		aim.shot.angle = 2 * M_PI * (i % FAN_ANGLES) / FAN_ANGLES;
 		aim.shot.speed = planner->def.profile.max_speed / (i < FAN_ANGLES ? 2 : 1);
 		if (!play(planner, &aim, &record) || record.foul >= best_foul)

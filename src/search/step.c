@@ -4,9 +4,14 @@
 #include "search/planner.h"
 #include "search/respot.h"
 
+bool search_is_cancelled(const struct planner *planner)
+{
+	return atomic_load_explicit(&planner->cancel, memory_order_relaxed);
+}
+
 bool search_is_over(const struct planner *planner)
 {
-	if (atomic_load_explicit(&planner->cancel, memory_order_relaxed))
+	if (search_is_cancelled(planner))
 		return true;
 	return planner->def.now && planner->def.now(planner->def.now_context) >= planner->deadline;
 }
@@ -79,18 +84,27 @@ static void set_scene(const struct planner *planner, struct state *state)
 	}
 }
 
-static void push_roots(struct planner *planner, int index)
+int state_roots(const struct planner *planner, int index, struct node root[ROOTS_MAX])
 {
 	struct state *state = &planner->state[index];
 	set_scene(planner, state);
-	int outermost = (planner->def.profile.aims - 1) / 2;
+	int outermost = (planner->def.profile.aims - 1) / 2, count = 0;
+	assert(2 * outermost < AIMS_MAX);
 	for (int p = 0; p < planner->def.table->pocket_count && state->scene.wanted; p++)
 		for (int aim = -outermost; aim <= outermost; aim++) {
-			struct node root = candidate_root(&state->scene, p, aim);
-			root.state = (uint32_t)index;
-			root.cost += state->cost;
-			frontier_push(&planner->frontier, &root);
+			root[count] = candidate_root(&state->scene, p, aim);
+			root[count].state = (uint32_t)index;
+			root[count++].cost += state->cost;
 		}
+	return count;
+}
+
+static void push_roots(struct planner *planner, int index)
+{
+	struct node root[ROOTS_MAX];
+	int count = state_roots(planner, index, root);
+	for (int i = 0; i < count; i++)
+		frontier_push(&planner->frontier, &root[i]);
 }
 
 static void add_root_state(struct planner *planner, vec2 cue)
@@ -155,22 +169,26 @@ struct solutions *best_solutions(struct planner *planner)
 	return NULL;
 }
 
-static void work_on(void *context, int item, int worker)
+void slot_work(const struct planner *planner, struct slot *slot, struct workspace *work)
 {
-	struct planner *planner = context;
-	struct slot *slot = &planner->slot[item];
 	slot->child_count = slot->played_count = 0;
 	slot->expansions = slot->sims = slot->tried = slot->landed = slot->refined = 0;
 	slot->overflow = false;
-	if (atomic_load_explicit(&planner->cancel, memory_order_relaxed))
+	if (search_is_over(planner))
 		return;
 	if (slot->node.complete) {
-		slot_play(planner, slot, &planner->work[worker]);
+		slot_play(planner, slot, work);
 		return;
 	}
 	const struct state *state = &planner->state[slot->node.state];
 	slot->child_count = candidate_expand(&state->scene, &slot->node, slot->child, CHILDREN_MAX, &slot->overflow);
 	slot->expansions = 1;
+}
+
+static void work_on(void *context, int item, int worker)
+{
+	struct planner *planner = context;
+	slot_work(planner, &planner->slot[item], &planner->work[worker]);
 }
 
 /* Cost that a sequence must stay below to be among the wanted ones. */
@@ -180,8 +198,7 @@ static double cost_limit(const struct planner *planner)
 	return full->count == full->limit ? solutions_at(full, full->count - 1)->cost : INFINITY;
 }
 
-/* Nothing on the table is left to play for. */
-static bool is_cleared(const struct rules_outcome *outcome, int count)
+bool outcome_is_cleared(const struct rules_outcome *outcome, int count)
 {
 	for (int i = 0; i < count; i++)
 		if (rules_ball_on(&outcome->next, outcome->ball, count, i))
@@ -189,32 +206,37 @@ static bool is_cleared(const struct rules_outcome *outcome, int count)
 	return true;
 }
 
+void state_set(struct state *state, const struct planner *planner, const struct solution *shot, const struct rules_outcome *outcome)
+{
+	*state = (struct state){
+		.rules = outcome->next,
+		.record = shot->last,
+		.parent = shot->state,
+		.shots = planner->state[shot->state].shots + 1,
+		.cost = shot->cost,
+		.key = shot->key,
+	};
+	for (int i = 0; i < planner->ball_count; i++)
+		state->ball[i] = outcome->ball[i];
+}
+
 static void merge_played(struct planner *planner, const struct slot *slot, const struct played *played, bool *improved)
 {
 	struct state *from = &planner->state[slot->node.state];
 	from->landed[played->record.target] |= (uint8_t)(1u << played->record.pocket);
 	int depth = planner->request->depth, shots = from->shots + 1;
-	bool last = shots == depth || is_cleared(&played->outcome, planner->ball_count);
-	struct solution solution = {from->cost + played->record.cost, (int32_t)slot->node.state, played->record};
+	bool last = shots == depth || outcome_is_cleared(&played->outcome, planner->ball_count);
+	struct solution solution = solution_make(planner, slot->node.state, &played->record);
 	struct solutions *list = &planner->solutions[last ? depth - 1 : shots - 1];
 	if (solutions_add(list, &solution) && list == best_solutions(planner) && solutions_at(list, 0)->cost == solution.cost)
 		*improved = true;
-	if (last || solution.cost >= cost_limit(planner))
+	if (last || solution.cost > cost_limit(planner))
 		return;
 	if (planner->state_count == STATES_MAX) {
 		planner->overflow = true;
 		return;
 	}
-	struct state *state = &planner->state[planner->state_count];
-	*state = (struct state){
-		.rules = played->outcome.next,
-		.record = played->record,
-		.parent = (int32_t)slot->node.state,
-		.shots = shots,
-		.cost = solution.cost,
-	};
-	for (int i = 0; i < planner->ball_count; i++)
-		state->ball[i] = played->outcome.ball[i];
+	state_set(&planner->state[planner->state_count], planner, &solution, &played->outcome);
 	push_roots(planner, planner->state_count++);
 }
 
@@ -230,7 +252,7 @@ static void merge(struct planner *planner, const struct slot *slot, bool *improv
 		merge_played(planner, slot, &slot->played[i], improved);
 	double limit = cost_limit(planner);
 	for (int i = 0; i < slot->child_count; i++)
-		if (slot->child[i].cost < limit)
+		if (slot->child[i].cost <= limit)
 			frontier_push(&planner->frontier, &slot->child[i]);
 }
 
@@ -243,8 +265,7 @@ static int batch_size(struct planner *planner)
 	return (int)(budget - used);
 }
 
-/* An aim beside a pocket's middle, for a ball that falls there anyway. */
-static bool is_spare(const struct planner *planner, const struct node *node)
+bool node_is_spare(const struct planner *planner, const struct node *node)
 {
 	return node->aim != 0 && node->chain_count > 0 && (planner->state[node->state].landed[node->chain[0]] >> node->pocket & 1);
 }
@@ -253,7 +274,7 @@ bool search_step(struct planner *planner, bool *improved)
 {
 	uint64_t budget = planner->request->budget.nodes;
 	*improved = false;
-	if (frontier_best(&planner->frontier) >= cost_limit(planner))
+	if (planner->frontier.count == 0 || frontier_best(&planner->frontier) > cost_limit(planner))
 		return false;
 	if (search_is_over(planner) || (budget > 0 && planner->nodes + planner->sims >= budget)) {
 		planner->cut = true;
@@ -262,7 +283,7 @@ bool search_step(struct planner *planner, bool *improved)
 	int size = batch_size(planner), count = 0;
 	while (count < size && planner->frontier.count > 0) {
 		planner->slot[count].node = frontier_pop(&planner->frontier);
-		count += !is_spare(planner, &planner->slot[count].node);
+		count += !node_is_spare(planner, &planner->slot[count].node);
 	}
 	pool_for(planner->pool, count, work_on, planner);
 	for (int i = 0; i < count; i++)
