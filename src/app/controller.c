@@ -260,7 +260,7 @@ bool controller_plan(struct controller *c, const billiard_plan_t *plan, double n
 		return true;
 	if (plan->status != PLAN_MESSAGE_OK) {
 		bus_text(c->note, sizeof c->note, plan->reason, sizeof plan->reason);
-		if (plan->final && !c->has_plan)
+		if (plan->is_final && !c->has_plan)
 			event(c, FSM_NONE, now);
 		return true;
 	}

@@ -70,7 +70,7 @@ static void post(struct planner_service *service, const billiard_plan_t *plan)
 		service->last_time = process_seconds(NULL);
 	}
 	int at = service->answer_count;
-	if (at > 0 && !service->answer[at - 1].final && service->answer[at - 1].request_id == plan->request_id)
+	if (at > 0 && !service->answer[at - 1].is_final && service->answer[at - 1].request_id == plan->request_id)
 		at--;
 	if (at == ANSWER_MAX) {
 		/* The loop has not kept up with finals of cancelled requests: the oldest goes. */
@@ -91,7 +91,7 @@ static void send_plan(struct search *search, bool final)
 	double now = process_seconds(NULL);
 	plan->utime = process_utime();
 	plan->sequence = search->sequence++;
-	plan->final = final;
+	plan->is_final = final;
 	plan->seconds = now - search->started;
 	pthread_mutex_lock(&service->lock);
 	if (plan->sequence == 0)
@@ -241,7 +241,7 @@ static void answer_unstarted(struct planner_service *service)
 	billiard_plan_t plan;
 	plan_message_begin(&plan, &service->request);
 	plan.utime = process_utime();
-	plan.final = 1;
+	plan.is_final = 1;
 	plan.status = PLAN_MESSAGE_CANCELLED;
 	bus_set_text(plan.reason, sizeof plan.reason, REPLACED);
 	post(service, &plan);
@@ -280,7 +280,7 @@ bool planner_service_request(struct planner_service *service, const billiard_pla
 		take(service, request);
 	} else if (request->id == service->present_id) {
 		/* Asked again: it runs, or its last answer was lost. */
-		if (service->last.request_id == request->id && service->last.final)
+		if (service->last.request_id == request->id && service->last.is_final)
 			post(service, &service->last);
 	} else if (idle && !recent) {
 		/* Not late: the asker's clock was set back, or a recording is replayed. */
