@@ -20,7 +20,7 @@ JOBS ?= $(shell nproc)
 PHYSICS := ball collide contact contact_ball_real contact_mathavan contact_stronge detect event inverse model motion queue \
 	roots sim table trace
 SEARCH := candidate cost frontier geometry plan play pool refine request respot rules safety shot solutions step tolerance
-VISION := camera colour detect fit linear outline pose reason scan seeds vision
+VISION := calibration camera colour detect fit linear outline pose reason scan seeds stabilise track vision
 VISION_CV := capture_cv image_io_cv markers_cv marker_image_cv
 # app: what the programs share
 APP := text_file shot_file colour_file cmd_calibrate config config_reader config_table config_vision position cmd cmd_simulate cmd_detect cmd_plan plot overlay draw draw_field draw_path draw_proposal render \
@@ -37,8 +37,8 @@ TEST_SHARED := harness poly_judge scenes
 # tests that are scripts: tests/NAME.sh, called with the build folder
 TEST_SCRIPTS := cli
 # bench/bench_NAME.c each; bench/NAME.c shared by them
-BENCHES := physics
-BENCH_SHARED := report
+BENCHES := physics accuracy
+BENCH_SHARED := report plain_sim plain_sim_long
 # fuzz/fuzz_NAME.c each, seeds in fuzz/corpus/NAME
 FUZZERS := position config shot_file colours image
 FUZZ_SECONDS ?= 20

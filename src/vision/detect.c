@@ -116,7 +116,7 @@ static void add(struct detector *d, const struct candidate *c)
 	for (int i = 0; i < d->count; i++) {
 		if (vec2_dist(d->candidate[i].fit.pos, c->fit.pos) > apart)
 			continue;
-		if (worth(&d->candidate[i]) >= worth(c)) {
+		if (d->candidate[i].tag >= 0 || worth(&d->candidate[i]) >= worth(c)) {
 			refuse(d, c, REFUSED_DOUBLE);
 			return;
 		}
@@ -127,13 +127,23 @@ static void add(struct detector *d, const struct candidate *c)
 		d->candidate[d->count++] = *c;
 }
 
+/* A ball that is known lies there: no need to find it again. */
+static bool is_known(const struct detector *d, vec2 pos)
+{
+	for (int i = 0; i < d->count; i++)
+		if (d->candidate[i].tag >= 0 && vec2_dist(d->candidate[i].fit.pos, pos) < d->table->ball_radius)
+			return true;
+	return false;
+}
+
 static void try_place(struct detector *d, const struct fit_view *view, vec2 px)
 {
 	struct candidate c = {
 		.fit = {.scale = USUAL_SCALE, .expected_scale = USUAL_SCALE, .scale_spread = USUAL_SPREAD},
 		.cover = 1,
+		.tag = -1,
 	};
-	if (!camera_unproject(view->camera, px, view->radius, &c.fit.pos))
+	if (!camera_unproject(view->camera, px, view->radius, &c.fit.pos) || is_known(d, c.fit.pos))
 		return;
 	scan_cloth_at(&d->scan, px, c.fit.cloth);
 	bool fitted = fit_refine(view, &c.fit, 2);
@@ -240,7 +250,7 @@ static void fit_together(struct detector *d, struct fit_view *view, int steps)
 	know_neighbours(d, view, other);
 	for (int i = 0; i < d->count; i++) {
 		struct candidate *c = &d->candidate[i];
-		if (!fit_refine(view, &c->fit, steps))
+		if (!c->fixed && !fit_refine(view, &c->fit, steps))
 			c->refusal = REFUSED_FIT;
 	}
 	view->other_count = 0;
@@ -250,6 +260,8 @@ static void look(struct detector *d, const struct image *frame)
 {
 	for (int i = 0; i < d->count; i++) {
 		struct candidate *c = &d->candidate[i];
+		if (c->fixed)
+			continue;
 		scan_cloth_at(&d->scan, c->fit.outline.centre, c->fit.cloth);
 		c->look = colour_measure(frame, &c->fit.outline, c->fit.cloth);
 	}
@@ -276,14 +288,17 @@ static void refuse_overlaps(struct detector *d)
 			struct candidate *a = &d->candidate[i], *b = &d->candidate[j];
 			if (a->refusal != REFUSED_NOT || b->refusal != REFUSED_NOT || vec2_dist(a->fit.pos, b->fit.pos) > apart)
 				continue;
-			(worth(a) < worth(b) ? a : b)->refusal = REFUSED_DOUBLE;
+			bool drop_a = a->fixed != b->fixed ? b->fixed : worth(a) < worth(b);
+			(drop_a ? a : b)->refusal = REFUSED_DOUBLE;
 		}
 }
+
+static const double FIXED_FIRMNESS = 1e6;	/* others give way to what has not moved */
 
 /* How firmly a fit stands: edges that hold it. */
 static double firmness(const struct candidate *c)
 {
-	return c->fit.rays * c->fit.support * fmin(1, c->fit.contrast / 60) + 1;
+	return c->fixed ? FIXED_FIRMNESS : c->fit.rays * c->fit.support * fmin(1, c->fit.contrast / 60) + 1;
 }
 
 /* Balls are solid: where fits overlap, the one that few edges hold gives way more. */
@@ -308,6 +323,11 @@ static void push_apart(struct detector *d, int sweeps)
 /* Rounds of fitting, since every ball's hidden rim depends on its neighbours; then judgement. */
 static void settle(struct detector *d, struct fit_view *view)
 {
+	bool all_fixed = true;
+	for (int i = 0; i < d->count; i++)
+		all_fixed = all_fixed && d->candidate[i].fixed;
+	if (all_fixed)
+		return;
 	for (int round = 0; round < 3; round++) {
 		look(d, view->frame);
 		expect_scales(d);
@@ -321,6 +341,8 @@ static void settle(struct detector *d, struct fit_view *view)
 	look(d, view->frame);
 	for (int i = 0; i < d->count; i++) {
 		struct candidate *c = &d->candidate[i];
+		if (c->fixed)
+			continue;
 		look_around(d, c, true);
 		c->refusal = judge(d, c);
 		c->confidence = c->fit.support * c->cover;
@@ -329,19 +351,78 @@ static void settle(struct detector *d, struct fit_view *view)
 	push_apart(d, 20);
 	for (int i = 0; i < d->count; i++) {
 		struct fit *fit = &d->candidate[i].fit;
+		if (d->candidate[i].fixed)
+			continue;
 		outline_of_ball(view->camera, fit->pos, view->radius, fit->scale, &fit->outline);
 	}
 }
 
-bool detector_frame(struct detector *d, const struct image *frame, const struct camera *camera)
+static struct fit_view view_of(const struct detector *d, const struct image *frame, const struct camera *camera)
+{
+	return (struct fit_view){frame, camera, d->table->ball_radius, NULL, 0};
+}
+
+void detector_begin(struct detector *d)
 {
 	d->count = d->refused_count = 0;
-	if (!scan_frame(&d->scan, frame))
+}
+
+void detector_keep(struct detector *d, const struct candidate *known, int tag)
+{
+	if (d->count == DETECT_MAX)
+		return;
+	d->candidate[d->count] = *known;
+	d->candidate[d->count].fixed = true;
+	d->candidate[d->count].refusal = REFUSED_NOT;
+	d->candidate[d->count++].tag = tag;
+}
+
+bool detector_follow(struct detector *d, const struct image *frame, const struct camera *camera, const struct candidate *known,
+		     vec2 pos, int tag)
+{
+	struct candidate c = *known;
+	struct fit other[DETECT_MAX];
+	struct fit_view view = view_of(d, frame, camera);
+	c.fixed = false;
+	c.refusal = REFUSED_NOT;
+	c.tag = tag;
+	c.fit.pos = pos;
+	know_neighbours(d, &view, other);
+	if (d->count == DETECT_MAX || !fit_refine(&view, &c.fit, 2) || c.fit.support < SUPPORT_SEED ||
+	    !detect_possible(d->table, c.fit.pos) || !is_vacant(d, c.fit.pos))
 		return false;
-	seeds_find(&d->seeds, &d->scan, 0, 0, d->scan.width, d->scan.height);
-	struct fit_view view = {frame, camera, d->table->ball_radius, NULL, 0};
+	look_around(d, &c, false);
+	if (c.cover < COVER_MIN)
+		return false;
+	d->candidate[d->count++] = c;
+	return true;
+}
+
+void detector_search(struct detector *d, const struct image *frame, const struct camera *camera, const uint8_t *active)
+{
+	struct fit_view view = view_of(d, frame, camera);
+	seeds_find(&d->seeds, &d->scan, active);
 	for (int i = 0; i < d->seeds.count; i++)
 		try_place(d, &view, d->seeds.seed[i].px);
+}
+
+void detector_settle(struct detector *d, const struct image *frame, const struct camera *camera)
+{
+	struct fit_view view = view_of(d, frame, camera);
 	settle(d, &view);
+}
+
+double detector_cover(const struct detector *d, vec2 px)
+{
+	return cover_at(d, px, 0.8);
+}
+
+bool detector_frame(struct detector *d, const struct image *frame, const struct camera *camera)
+{
+	detector_begin(d);
+	if (!scan_frame(&d->scan, frame))
+		return false;
+	detector_search(d, frame, camera, NULL);
+	detector_settle(d, frame, camera);
 	return true;
 }

@@ -19,6 +19,8 @@ struct candidate {
 	double ring;		/* share just outside of the rim that is not cloth, neighbours left out */
 	double confidence;	/* 0..1 */
 	enum refusal refusal;
+	bool fixed;		/* known from before and unchanged: neither fitted nor judged again */
+	int tag;		/* the caller's, -1 for what was found anew */
 };
 
 struct detector {
@@ -39,6 +41,19 @@ void detector_finish(struct detector *d);
 bool detector_place(struct detector *d, const struct camera *camera);
 /* Balls of a whole frame into d->candidate. False when no cloth is seen. */
 bool detector_frame(struct detector *d, const struct image *frame, const struct camera *camera);
+
+/* The same in steps, for a tracked table whose scan is up to date: begin; put in what is known; look for more in the active
+ * cells; settle. Candidates that are known carry the caller's tag. */
+void detector_begin(struct detector *d);
+/* A ball that did not change. */
+void detector_keep(struct detector *d, const struct candidate *known, int tag);
+/* A ball to be fitted again, near pos; scale and look are taken from known. False when it is not there. */
+bool detector_follow(struct detector *d, const struct image *frame, const struct camera *camera, const struct candidate *known,
+		     vec2 pos, int tag);
+void detector_search(struct detector *d, const struct image *frame, const struct camera *camera, const uint8_t *active);
+void detector_settle(struct detector *d, const struct image *frame, const struct camera *camera);
+/* Share of small pixels that are not cloth around a full pixel, within 0.8 of a usual ball's radius. */
+double detector_cover(const struct detector *d, vec2 px);
 
 /* A ball's centre can be here: on the bed, or in a pocket's mouth. */
 bool detect_possible(const struct table *table, vec2 pos);

@@ -22,7 +22,12 @@ int scan_init(struct scan *scan, int width, int height)
 	scan->row_to = calloc((size_t)(width + height), sizeof(*scan->row_to));
 	scan->cell = calloc(3 * cells, sizeof(*scan->cell));
 	scan->cell_weight = calloc(2 * cells, sizeof(*scan->cell_weight));
-	if (scan->bgr && scan->mark && scan->row_from && scan->row_to && scan->cell && scan->cell_weight)
+	scan->reference = malloc(3 * n);
+	scan->changed = calloc(2 * cells, sizeof(*scan->changed));
+	scan->difference = calloc(cells, sizeof(*scan->difference));
+	scan->foreign = calloc(cells, sizeof(*scan->foreign));
+	if (scan->bgr && scan->mark && scan->row_from && scan->row_to && scan->cell && scan->cell_weight && scan->reference &&
+	    scan->changed && scan->difference && scan->foreign)
 		return 0;
 	scan_finish(scan);
 	return -ENOMEM;
@@ -36,6 +41,10 @@ void scan_finish(struct scan *scan)
 	free(scan->row_to);
 	free(scan->cell);
 	free(scan->cell_weight);
+	free(scan->reference);
+	free(scan->changed);
+	free(scan->difference);
+	free(scan->foreign);
 	*scan = (struct scan){0};
 }
 
@@ -413,6 +422,29 @@ static void mark_row(struct scan *scan, int y, int x0, int x1)
 	}
 }
 
+/* Corners of a cell, small pixels; x1 and y1 are beyond it. */
+struct box {
+	int x0, y0, x1, y1;
+};
+
+static struct box cell_box(const struct scan *scan, int cx, int cy)
+{
+	struct box b = {cx * SCAN_CELL, cy * SCAN_CELL, (cx + 1) * SCAN_CELL, (cy + 1) * SCAN_CELL};
+	b.x1 = b.x1 < scan->width ? b.x1 : scan->width;
+	b.y1 = b.y1 < scan->height ? b.y1 : scan->height;
+	return b;
+}
+
+static void count_foreign(struct scan *scan, int cx, int cy)
+{
+	struct box b = cell_box(scan, cx, cy);
+	int foreign = 0;
+	for (int y = b.y0; y < b.y1; y++)
+		for (int x = b.x0; x < b.x1; x++)
+			foreign += scan->mark[y * scan->width + x] >> 7;
+	scan->foreign[cy * scan->cells_x + cx] = (uint16_t)foreign;
+}
+
 bool scan_frame(struct scan *scan, const struct image *frame)
 {
 	copy_small(scan, frame, 0, 0, scan->width, scan->height);
@@ -421,13 +453,111 @@ bool scan_frame(struct scan *scan, const struct image *frame)
 	learn_cells(scan);
 	for (int y = 0; y < scan->height; y++)
 		mark_row(scan, y, 0, scan->width);
+	for (int cy = 0; cy < scan->cells_y; cy++)
+		for (int cx = 0; cx < scan->cells_x; cx++)
+			count_foreign(scan, cx, cy);
+	memcpy(scan->reference, scan->bgr, 3 * (size_t)scan->width * (size_t)scan->height);
 	return true;
 }
 
-void scan_region(struct scan *scan, const struct image *frame, int x0, int y0, int x1, int y1)
+/* ---- changes --------------------------------------------------------------------------------------------------------- */
+
+static const double CHANGE_FACTOR = 1.8, CHANGE_FLOOR = 12;	/* against the usual difference; 1/16 level */
+
+static int row_difference(const uint8_t *restrict a, const uint8_t *restrict b, int count)
 {
-	assert(x0 >= 0 && y0 >= 0 && x1 <= scan->width && y1 <= scan->height);
-	copy_small(scan, frame, x0, y0, x1, y1);
-	for (int y = y0; y < y1; y++)
-		mark_row(scan, y, x0, x1);
+	int sum = 0;
+	if (count == 3 * SCAN_CELL) {
+		for (int i = 0; i < 3 * SCAN_CELL; i++)
+			sum += abs(a[i] - b[i]);
+		return sum;
+	}
+	for (int i = 0; i < count; i++)
+		sum += abs(a[i] - b[i]);
+	return sum;
+}
+
+static uint16_t cell_difference(const struct scan *scan, int cx, int cy)
+{
+	struct box b = cell_box(scan, cx, cy);
+	int sum = 0, count = 3 * (b.x1 - b.x0);
+	for (int y = b.y0; y < b.y1; y++) {
+		ptrdiff_t at = 3 * ((ptrdiff_t)y * scan->width + b.x0);
+		sum += row_difference(scan->bgr + at, scan->reference + at, count);
+	}
+	int mean = 16 * sum / (count * (b.y1 - b.y0));
+	return (uint16_t)(mean < 4095 ? mean : 4095);
+}
+
+/* The usual difference is noise: the median of all cells. */
+static int usual_difference(const struct scan *scan)
+{
+	static const int bins = 512;
+	int hist[512] = {0}, cells = scan->cells_x * scan->cells_y, sum = 0, at = 0;
+	for (int i = 0; i < cells; i++)
+		hist[scan->difference[i] < bins ? scan->difference[i] : bins - 1]++;
+	for (sum = hist[0]; 2 * sum < cells && at < bins - 1;)
+		sum += hist[++at];
+	return at;
+}
+
+static void dilate(struct scan *scan, const uint8_t *core)
+{
+	for (int cy = 0; cy < scan->cells_y; cy++)
+		for (int cx = 0; cx < scan->cells_x; cx++) {
+			int any = 0;
+			for (int y = cy > 0 ? cy - 1 : 0; y <= cy + 1 && y < scan->cells_y; y++)
+				for (int x = cx > 0 ? cx - 1 : 0; x <= cx + 1 && x < scan->cells_x; x++)
+					any |= core[y * scan->cells_x + x];
+			scan->changed[cy * scan->cells_x + cx] = (uint8_t)any;
+		}
+}
+
+int scan_changes(struct scan *scan, const struct image *frame)
+{
+	int cells = scan->cells_x * scan->cells_y, count = 0;
+	uint8_t *core = scan->changed + cells;
+	copy_small(scan, frame, 0, 0, scan->width, scan->height);
+	for (int cy = 0; cy < scan->cells_y; cy++)
+		for (int cx = 0; cx < scan->cells_x; cx++)
+			scan->difference[cy * scan->cells_x + cx] = cell_difference(scan, cx, cy);
+	double limit = CHANGE_FACTOR * usual_difference(scan) + CHANGE_FLOOR;
+	for (int i = 0; i < cells; i++)
+		core[i] = scan->difference[i] > limit;
+	dilate(scan, core);
+	for (int i = 0; i < cells; i++)
+		count += scan->changed[i];
+	return count;
+}
+
+void scan_update(struct scan *scan)
+{
+	for (int cy = 0; cy < scan->cells_y; cy++)
+		for (int cx = 0; cx < scan->cells_x; cx++) {
+			if (!scan->changed[cy * scan->cells_x + cx])
+				continue;
+			struct box b = cell_box(scan, cx, cy);
+			for (int y = b.y0; y < b.y1; y++) {
+				ptrdiff_t at = 3 * ((ptrdiff_t)y * scan->width + b.x0);
+				memcpy(scan->reference + at, scan->bgr + at, 3 * (size_t)(b.x1 - b.x0));
+				mark_row(scan, y, b.x0, b.x1);
+			}
+			count_foreign(scan, cx, cy);
+		}
+}
+
+void scan_relearn(struct scan *scan, int cell_row)
+{
+	assert(cell_row >= 0 && cell_row < scan->cells_y);
+	for (int cx = 0; cx < scan->cells_x; cx++) {
+		int at = cell_row * scan->cells_x + cx;
+		float before[3], weight = scan->cell_weight[at];
+		memcpy(before, scan->cell + 3 * at, sizeof(before));
+		cell_colour(scan, cx, cell_row);
+		if (scan->cell_weight[at] > 0)
+			continue;
+		/* Covered just now: what was known still holds. */
+		memcpy(scan->cell + 3 * at, before, sizeof(before));
+		scan->cell_weight[at] = weight;
+	}
 }

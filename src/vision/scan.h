@@ -26,6 +26,10 @@ struct scan {
 	float *cell;		/* cells_x x cells_y x 3: cloth, BGR */
 	float *cell_weight;
 	float cloth[3];		/* of the whole bed, BGR */
+	uint8_t *reference;	/* what the marks were made from: bgr as it was then */
+	uint8_t *changed;	/* per cell: differs from the reference */
+	uint16_t *foreign;	/* per cell: pixels that are not cloth */
+	uint16_t *difference;	/* per cell: mean absolute difference, 1/16 level */
 };
 
 /* Room for frames of up to width x height at factor 1. 0 or -ENOMEM. */
@@ -37,9 +41,13 @@ void scan_finish(struct scan *scan);
 bool scan_place(struct scan *scan, const struct camera *camera, const struct table *table);
 /* Copies, learns the cloth, marks. False when nothing like an even cloth is seen (black, overexposed...). */
 bool scan_frame(struct scan *scan, const struct image *frame);
-/* Parts of the same for a tracked table: only the small pixels [x0, x1) x [y0, y1) are copied and marked again. */
-void scan_region(struct scan *scan, const struct image *frame, int x0, int y0, int x1, int y1);
-
+/* The next frame of a tracked table: copies it and finds the cells that changed (with those around them). Returns how many; they are in
+ * scan->changed until the next call. */
+int scan_changes(struct scan *scan, const struct image *frame);
+/* Marks the changed cells anew. */
+void scan_update(struct scan *scan);
+/* Learns the cloth of one row of cells again: light drifts. */
+void scan_relearn(struct scan *scan, int cell_row);
 /* Cloth colour, BGR, at a full pixel. */
 void scan_cloth_at(const struct scan *scan, vec2 px, float out[3]);
 /* Full pixel of a small pixel's middle, and the reverse. */

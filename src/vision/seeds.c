@@ -115,8 +115,9 @@ static void vote_row(struct seeds *seeds, const struct scan *scan, int y, int x0
 }
 
 /* Box of 3 x 3: votes miss by a pixel. */
-static void smooth_row(struct seeds *seeds, int width, int y, int x0, int x1)
+static void smooth_row(struct seeds *seeds, const struct scan *scan, int y, int x0, int x1)
 {
+	int width = scan->width;
 	const uint16_t *a = seeds->vote + (y - 1) * width, *b = a + width, *c = b + width;
 	uint16_t *out = seeds->sum + y * width;
 	for (int x = x0; x < x1; x++)
@@ -211,23 +212,40 @@ static void drop_doubles(struct seeds *seeds, const struct scan *scan)
 	seeds->count = kept;
 }
 
-void seeds_find(struct seeds *seeds, const struct scan *scan, int x0, int y0, int x1, int y1)
+/* The next run of active cells in a row of small pixels, at or after *x: [*x, *end). */
+static bool next_run(const struct scan *scan, const uint8_t *active, int y, int *x, int *end)
 {
-	int w = scan->width;
-	x0 = x0 < 3 ? 3 : x0;
-	y0 = y0 < 3 ? 3 : y0;
-	x1 = x1 > w - 3 ? w - 3 : x1;
-	y1 = y1 > scan->height - 3 ? scan->height - 3 : y1;
+	int last = scan->width - 3, cell = *x / SCAN_CELL;
+	const uint8_t *row = active ? active + y / SCAN_CELL * scan->cells_x : NULL;
+	if (!row) {
+		*end = last;
+		return *x < last;
+	}
+	while (cell < scan->cells_x && !row[cell])
+		*x = ++cell * SCAN_CELL;
+	while (cell < scan->cells_x && row[cell])
+		cell++;
+	*end = cell * SCAN_CELL < last ? cell * SCAN_CELL : last;
+	return *x < *end;
+}
+
+typedef void row_pass(struct seeds *seeds, const struct scan *scan, int y, int x0, int x1);
+
+static void run_pass(struct seeds *seeds, const struct scan *scan, const uint8_t *active, row_pass *pass)
+{
+	for (int y = 3; y < scan->height - 3; y++)
+		for (int x = 3, end; next_run(scan, active, y, &x, &end); x = end)
+			pass(seeds, scan, y, x, end);
+}
+
+void seeds_find(struct seeds *seeds, const struct scan *scan, const uint8_t *active)
+{
+	size_t n = (size_t)scan->width * (size_t)scan->height;
 	seeds->count = 0;
-	memset(seeds->vote, 0, sizeof(*seeds->vote) * (size_t)w * (size_t)scan->height);
-	memset(seeds->sum, 0, sizeof(*seeds->sum) * (size_t)w * (size_t)scan->height);
-	if (x0 >= x1)
-		return;
-	for (int y = y0; y < y1; y++)
-		vote_row(seeds, scan, y, x0, x1);
-	for (int y = y0; y < y1; y++)
-		smooth_row(seeds, w, y, x0, x1);
-	for (int y = y0; y < y1; y++)
-		collect_row(seeds, scan, y, x0, x1);
+	memset(seeds->vote, 0, sizeof(*seeds->vote) * n);
+	memset(seeds->sum, 0, sizeof(*seeds->sum) * n);
+	run_pass(seeds, scan, active, vote_row);
+	run_pass(seeds, scan, active, smooth_row);
+	run_pass(seeds, scan, active, collect_row);
 	drop_doubles(seeds, scan);
 }

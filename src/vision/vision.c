@@ -6,24 +6,35 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "vision/calibration.h"
 #include "vision/colour.h"
 #include "vision/detect.h"
-#include "vision/markers_cv.h"
-#include "vision/pose.h"
 #include "vision/reason.h"
+#include "vision/track.h"
+
+static const double OCCLUDED_CELLS = 2.5;	/* cells full of something that is no ball: more than a stain */
+static const double OCCLUDED_SHARE = 0.2;	/* of a cell; less is lines and the edge of the bed */
+static const double BUMP_SHARE = 0.5;		/* of all cells changed at once: the camera may have been bumped */
 
 struct vision {
 	struct vision_def def;
 	struct colour_classifier colours;
 	bool has_colours;
-	struct marker_finder *finder;
+	struct calibration single, stream;
 	struct detector detector;
+	struct tracker tracker;
+	bool tracking;			/* the detector's scan is that of the stream's last frame */
+	int width, height;		/* px of the stream */
+	double time;
+	int relearn_row;
 };
 
 struct vision_def vision_def_default(void)
 {
 	return (struct vision_def){.marker_interval = 1, .pose_keep = 10};
 }
+
+/* ---- life ------------------------------------------------------------------------------------------------------------ */
 
 static int check_def(const struct vision_def *def, char *err, size_t err_size)
 {
@@ -43,6 +54,23 @@ static int check_def(const struct vision_def *def, char *err, size_t err_size)
 	return def->colours ? colour_model_check(def->colours, err, err_size) : 0;
 }
 
+static int init_parts(struct vision *v, char *err, size_t err_size)
+{
+	const struct vision_def *def = &v->def;
+	int rc = calibration_init(&v->single, &def->markers, def->marker_interval, def->pose_keep, err, err_size);
+	if (rc == 0)
+		rc = calibration_init(&v->stream, &def->markers, def->marker_interval, def->pose_keep, err, err_size);
+	if (rc < 0)
+		return rc;
+	rc = detector_init(&v->detector, def->table, v->has_colours ? &v->colours : NULL, def->intrinsics.width,
+			   def->intrinsics.height);
+	if (rc < 0)
+		return vision_fail(rc, err, err_size, "no memory for frames of %d x %d px", def->intrinsics.width,
+				   def->intrinsics.height);
+	tracker_init(&v->tracker, &v->detector);
+	return 0;
+}
+
 int vision_create(struct vision **out, const struct vision_def *def, char *err, size_t err_size)
 {
 	*out = NULL;
@@ -56,14 +84,8 @@ int vision_create(struct vision **out, const struct vision_def *def, char *err, 
 	v->has_colours = def->colours != NULL;
 	if (v->has_colours)
 		v->colours = colour_classifier(def->colours);
-	rc = marker_finder_create(&v->finder, def->markers.dictionary_count, def->markers.dictionary_bits, err, err_size);
-	if (rc == 0) {
-		rc = detector_init(&v->detector, def->table, v->has_colours ? &v->colours : NULL, def->intrinsics.width,
-				   def->intrinsics.height);
-		if (rc < 0)
-			vision_fail(rc, err, err_size, "no memory for frames of %d x %d px", def->intrinsics.width,
-				    def->intrinsics.height);
-	}
+	v->def.colours = NULL;
+	rc = init_parts(v, err, err_size);
 	if (rc < 0) {
 		vision_destroy(v);
 		return rc;
@@ -76,9 +98,17 @@ void vision_destroy(struct vision *vision)
 {
 	if (!vision)
 		return;
-	marker_finder_destroy(vision->finder);
+	calibration_finish(&vision->single);
+	calibration_finish(&vision->stream);
 	detector_finish(&vision->detector);
 	free(vision);
+}
+
+void vision_reset(struct vision *vision)
+{
+	tracker_forget(&vision->tracker);
+	calibration_reset(&vision->stream);
+	vision->tracking = false;
 }
 
 void vision_samples(const struct vision *vision, struct colour_sample *out)
@@ -88,75 +118,194 @@ void vision_samples(const struct vision *vision, struct colour_sample *out)
 		out[i] = (struct colour_sample){d->candidate[i].look, d->candidate[i].fit.scale, COLOUR_UNKNOWN};
 }
 
-void vision_reset(struct vision *vision)
+/* ---- results --------------------------------------------------------------------------------------------------------- */
+
+static void report_calibration(const struct calibration *c, struct vision_result *out)
 {
-	(void)vision;
+	out->calibration = c->now_count >= 3 ? CALIBRATION_FRESH : CALIBRATION_KEPT;
+	out->camera = c->camera;
+	out->markers_seen = c->now_count;
+	out->residual_px = c->fit.residual_px;
+	out->residual = c->fit.residual;
 }
 
-/* The camera from this frame's markers. */
-static bool calibrate(struct vision *v, const struct image *frame, struct vision_result *out)
+/* Colours of all balls at once. */
+static void assign_colours(const struct vision *v, const struct colour_feature *look, struct vision_result *out)
 {
-	struct marker_view view[MARKER_MAX];
-	struct pose_fit fit;
-	int count = marker_find(v->finder, frame, view, MARKER_MAX);
-	out->markers_seen = count;
-	if (!pose_from_markers(&v->def.markers, view, count, &out->camera, &fit)) {
-		if (count < 3)
-			snprintf(out->reason, sizeof(out->reason), "%d of %d markers seen, 3 are needed", count, v->def.markers.count);
-		else
-			snprintf(out->reason, sizeof(out->reason), "the %d markers seen do not fit the table", count);
-		return false;
-	}
-	out->calibration = CALIBRATION_FRESH;
-	out->residual_px = fit.residual_px;
-	out->residual = fit.residual;
-	return true;
-}
-
-static void report(struct vision *v, struct vision_result *out)
-{
-	struct detector *d = &v->detector;
-	struct colour_feature feature[VISION_BALL_MAX];
 	struct colour_verdict verdict[VISION_BALL_MAX];
-	int count = d->count < VISION_BALL_MAX ? d->count : VISION_BALL_MAX;
-	for (int i = 0; i < count; i++) {
-		feature[i] = d->candidate[i].look;
+	for (int i = 0; i < out->ball_count; i++)
 		verdict[i] = (struct colour_verdict){COLOUR_UNKNOWN, 1};
-	}
 	if (v->has_colours)
-		colour_assign(&v->colours, feature, count, verdict);
-	for (int i = 0; i < count; i++) {
-		const struct candidate *c = &d->candidate[i];
-		out->ball[i] = (struct vision_ball){.pos = c->fit.pos, .px = c->fit.outline.centre, .colour = verdict[i].colour,
-						    .confidence = c->confidence, .radius_px = c->fit.outline.radius_px,
-						    .rim_support = c->fit.support};
+		colour_assign(&v->colours, look, out->ball_count, verdict);
+	for (int i = 0; i < out->ball_count; i++)
+		out->ball[i].colour = verdict[i].colour;
+}
+
+static struct vision_ball ball_of(const struct candidate *c)
+{
+	return (struct vision_ball){.pos = c->fit.pos, .px = c->fit.outline.centre, .confidence = c->confidence,
+				    .radius_px = c->fit.outline.radius_px, .rim_support = c->fit.support};
+}
+
+static bool is_explained(const struct vision *v, const struct vision_result *r, vec2 px)
+{
+	vec2 pos;
+	const struct table *table = v->def.table;
+	double half_cell = SCAN_CELL * v->detector.scan.factor / 2.0;
+	for (int i = 0; i < r->ball_count; i++)
+		if (vec2_dist(r->ball[i].px, px) < r->ball[i].radius_px + half_cell)
+			return true;
+	if (!camera_unproject(&r->camera, px, 0, &pos))
+		return true;
+	for (int i = 0; i < table->pocket_count; i++)
+		if (vec2_dist(table->pocket[i].centre, pos) < table->pocket[i].radius + 1.5 * table->ball_radius)
+			return true;
+	return false;
+}
+
+/* Something large that neither balls nor pockets explain. */
+static bool is_occluded(const struct vision *v, const struct vision_result *r)
+{
+	const struct scan *s = &v->detector.scan;
+	double sum = 0;
+	for (int cy = 0; cy < s->cells_y; cy++)
+		for (int cx = 0; cx < s->cells_x; cx++) {
+			double share = s->foreign[cy * s->cells_x + cx] / (double)(SCAN_CELL * SCAN_CELL);
+			vec2 px = scan_to_full(s, (cx + 0.5) * SCAN_CELL, (cy + 0.5) * SCAN_CELL);
+			if (share > OCCLUDED_SHARE && !is_explained(v, r, px))
+				sum += share;
+		}
+	return sum > OCCLUDED_CELLS;
+}
+
+/* ---- single frames --------------------------------------------------------------------------------------------------- */
+
+static int check_frame(const struct vision *v, const struct image *frame, struct camera_intrinsics *in, char *err, size_t err_size)
+{
+	if (camera_scale(&v->def.intrinsics, frame->width, frame->height, in))
+		return 0;
+	return vision_fail(-EINVAL, err, err_size, "a frame of %d x %d px does not fit a camera of %d x %d px", frame->width,
+			   frame->height, v->def.intrinsics.width, v->def.intrinsics.height);
+}
+
+static bool place(struct vision *v, struct vision_result *r)
+{
+	if (detector_place(&v->detector, &r->camera))
+		return true;
+	r->calibration = CALIBRATION_NONE;
+	snprintf(r->reason, sizeof(r->reason), "the table is not in the picture");
+	return false;
+}
+
+static void report_single(const struct vision *v, struct vision_result *r)
+{
+	struct colour_feature look[VISION_BALL_MAX];
+	const struct detector *d = &v->detector;
+	for (int i = 0; i < d->count && i < VISION_BALL_MAX; i++) {
+		r->ball[i] = ball_of(&d->candidate[i]);
+		look[i] = d->candidate[i].look;
+		r->ball_count++;
 	}
-	out->ball_count = count;
+	assign_colours(v, look, r);
+	r->occluded = is_occluded(v, r);
 }
 
 int vision_detect(struct vision *vision, const struct image *frame, struct vision_result *out, char *err, size_t err_size)
 {
 	struct vision_result r = {0};
-	if (!camera_scale(&vision->def.intrinsics, frame->width, frame->height, &r.camera.in))
-		return vision_fail(-EINVAL, err, err_size, "a frame of %d x %d px does not fit a camera of %d x %d px",
-				   frame->width, frame->height, vision->def.intrinsics.width, vision->def.intrinsics.height);
-	if (calibrate(vision, frame, &r)) {
-		if (!detector_place(&vision->detector, &r.camera)) {
-			r.calibration = CALIBRATION_NONE;
-			snprintf(r.reason, sizeof(r.reason), "the table is not in the picture");
-		} else if (detector_frame(&vision->detector, frame, &r.camera)) {
-			report(vision, &r);
-		} else {
+	int rc = check_frame(vision, frame, &r.camera.in, err, err_size);
+	if (rc < 0)
+		return rc;
+	/* The scan is shared with the stream, which must then begin with a whole frame again. */
+	vision->tracking = false;
+	vision->detector.count = 0;
+	if (calibration_single(&vision->single, frame, &r.camera.in, r.reason, sizeof(r.reason))) {
+		report_calibration(&vision->single, &r);
+		if (place(vision, &r) && detector_frame(&vision->detector, frame, &r.camera))
+			report_single(vision, &r);
+		else if (r.calibration != CALIBRATION_NONE)
 			snprintf(r.reason, sizeof(r.reason), "no cloth is seen: too dark or too bright");
-		}
+	} else {
+		r.markers_seen = vision->single.now_count;
 	}
 	*out = r;
 	return 0;
 }
 
+/* ---- streams --------------------------------------------------------------------------------------------------------- */
+
+static void report_tracks(const struct vision *v, struct vision_result *r)
+{
+	struct colour_feature look[VISION_BALL_MAX];
+	for (int i = 0; i < TRACK_MAX; i++) {
+		const struct track *k = &v->tracker.track[i];
+		if (k->id == 0 || !k->confirmed || r->ball_count == VISION_BALL_MAX)
+			continue;
+		struct vision_ball *b = &r->ball[r->ball_count];
+		*b = ball_of(&k->seen);
+		b->pos = k->steady.pos;
+		b->vel = k->steady.vel;
+		camera_project(&r->camera, b->pos, v->def.table->ball_radius, &b->px);
+		b->track = k->id;
+		b->age = k->age;
+		if (k->misses > 0)
+			b->confidence *= 0.5;
+		look[r->ball_count++] = k->look;
+	}
+	assign_colours(v, look, r);
+	r->occluded = is_occluded(v, r);
+}
+
+/* The whole frame: at the start, after a bump, after a single frame in between. */
+static void step_whole(struct vision *v, const struct image *frame, double time, struct vision_result *r)
+{
+	v->tracking = false;
+	if (!place(v, r))
+		return;
+	if (!detector_frame(&v->detector, frame, &r->camera)) {
+		snprintf(r->reason, sizeof(r->reason), "no cloth is seen: too dark or too bright");
+		return;
+	}
+	tracker_restart(&v->tracker, time);
+	v->tracking = true;
+	report_tracks(v, r);
+}
+
+static void step_changes(struct vision *v, const struct image *frame, double time, struct vision_result *r)
+{
+	struct scan *s = &v->detector.scan;
+	scan_update(s);
+	tracker_step(&v->tracker, frame, &r->camera, time);
+	scan_relearn(s, v->relearn_row++ % s->cells_y);
+	report_tracks(v, r);
+}
+
 int vision_track(struct vision *vision, const struct image *frame, double time, struct vision_result *out, char *err,
 		 size_t err_size)
 {
-	(void)time;
-	return vision_detect(vision, frame, out, err, err_size);
+	struct vision_result r = {0};
+	struct scan *s = &vision->detector.scan;
+	int rc = check_frame(vision, frame, &r.camera.in, err, err_size);
+	if (rc < 0)
+		return rc;
+	if (time < vision->time || frame->width != vision->width || frame->height != vision->height)
+		vision_reset(vision);
+	vision->time = time;
+	vision->width = frame->width;
+	vision->height = frame->height;
+	bool urgent = vision->tracking && scan_changes(s, frame) > BUMP_SHARE * s->cells_x * s->cells_y;
+	enum calibration_news news = calibration_track(&vision->stream, frame, &r.camera.in, time, urgent, r.reason, sizeof(r.reason));
+	if (news == CALIBRATION_LOST) {
+		r.markers_seen = vision->stream.now_count;
+		vision->tracking = false;
+	} else {
+		report_calibration(&vision->stream, &r);
+		r.pose_age = time - vision->stream.found;
+		if (news == CALIBRATION_MOVED || !vision->tracking)
+			step_whole(vision, frame, time, &r);
+		else
+			step_changes(vision, frame, time, &r);
+	}
+	*out = r;
+	return 0;
 }
