@@ -7,7 +7,7 @@
 static const double SAME_INSTANT = 4e-12; /* s */
 /* Two bodies that press on each other meet again no sooner than this. The restitution laws have no force that lasts; without
  * a bound, a pressed pair bounces ever faster (Luding and McNamara 1998 bound it likewise). */
-static const double PRESS_INTERVAL = 5e-3; /* s */
+static const double PRESS_INTERVAL = 2e-3; /* s */
 /* At most this share of the pair's root mean square speed goes into keeping them apart. */
 static const double LIFT_SHARE = 0.2;
 /* More contacts than this at one instant are an inelastic collapse, not a cascade through a rack. */
