@@ -8,13 +8,6 @@
 
 #include "app/config.h"
 
-/* libconfig 1.5 itself leaks the string it was reading when the syntax is wrong. */
-const char *__lsan_default_suppressions(void);
-const char *__lsan_default_suppressions(void)
-{
-	return "leak:libconfig.so";
-}
-
 int LLVMFuzzerTestOneInput(const uint8_t *data, size_t size);
 
 int LLVMFuzzerTestOneInput(const uint8_t *data, size_t size)

@@ -10,13 +10,6 @@
 #include "app/text_file.h"
 #include "harness.h"
 
-/* libconfig 1.5 itself leaks the string it was reading when the syntax is wrong. */
-const char *__lsan_default_suppressions(void);
-const char *__lsan_default_suppressions(void)
-{
-	return "leak:libconfig.so";
-}
-
 #define THESIS "config/thesis-table.conf"
 #define SNOOKER "config/snooker-12ft.conf"
 
