@@ -19,13 +19,13 @@ JOBS ?= $(shell nproc)
 
 PHYSICS := ball collide contact contact_ball_real contact_mathavan contact_stronge detect event inverse model motion queue \
 	roots sim table trace
-SEARCH := candidate cost frontier geometry plan play pool refine request respot rules safety shot solutions step tolerance
+SEARCH := candidate cost frontier geometry plan play pool rank refine request respot rules safety shot solutions step tolerance
 VISION := calibration camera colour detect fit linear outline pose reason scan seeds stabilise track vision
 VISION_CV := capture_cv image_io_cv markers_cv marker_image_cv
 # app: what the programs share
 APP := text_file shot_file colour_file cmd_calibrate config config_reader config_table config_vision position cmd cmd_simulate cmd_detect cmd_plan plot overlay draw draw_field draw_path draw_proposal render \
 	table_scene table_camera table_camera_ball player \
-	bus process fsm stability plan_message planner_service controller frame_source window supervisor cmd_run cmd_status cmd_demo
+	bus process fsm stability plan_message animation planner_service controller frame_source window supervisor cmd_run cmd_status cmd_demo
 # programs: src/app/main_NAME.c becomes build/NAME
 PROGRAMS := billiard billiard-vision billiard-planner billiard-infinity billiard-projector billiard-table
 # tests/test_NAME.c each; tests/NAME.c shared by them

@@ -2,6 +2,7 @@
 #include <stdio.h>
 #include <string.h>
 
+#include "app/animation.h"
 #include "app/draw.h"
 #include "app/plan_message.h"
 #include "app/process.h"
@@ -16,8 +17,7 @@ struct projector {
 	struct render *render;
 	struct window *window;		/* NULL without a display */
 	billiard_draw_list_t list;
-	billiard_animation_t animation;
-	double animation_begin;		/* s, monotonic, when the animation stood at its position */
+	struct animation animation;
 	bool dirty;
 	int64_t pictures;
 	double work;			/* s, of the last picture */
@@ -39,16 +39,9 @@ static bool on_draw(void *context, const void *message)
 static bool on_animation(void *context, const void *message)
 {
 	struct projector *p = context;
-	const billiard_animation_t *animation = message;
-	if (!plan_message_animation_check(animation))
-		return false;
-	/* Repeated each second: the same again must not start it anew. */
-	if (animation->utime == p->animation.utime && plan_message_same_motion(animation, &p->animation))
-		return true;
-	p->animation = *animation;
-	p->animation_begin = process_seconds(NULL);
-	p->dirty = true;
-	return true;
+	bool changed, ok = animation_take(&p->animation, message, process_seconds(NULL), &changed);
+	p->dirty = p->dirty || changed;
+	return ok;
 }
 
 static void snapshot(struct projector *p, const char *path)
@@ -93,12 +86,11 @@ static int on_frame(sd_event_source *source, uint64_t usec, void *context)
 		send_command(p, name, argument);
 	if (quit)
 		return sd_event_exit(p->process.event, 0);
-	bool moving = p->animation.keyframe_count > 0;
-	if (!p->window || !(p->dirty || (moving && p->animation.run)))
+	if (!p->window || !(p->dirty || animation_runs(&p->animation)))
 		return 0;
 	double begin = process_seconds(NULL);
-	render_draw(p->render, &p->list, moving ? &p->animation : NULL,
-		    plan_message_animation_time(&p->animation, begin - p->animation_begin));
+	render_draw(p->render, &p->list, animation_is_shown(&p->animation) ? &p->animation.message : NULL,
+		    animation_time(&p->animation, begin));
 	int width, height, stride;
 	const uint32_t *pixels = render_pixels(p->render, &width, &height, &stride);
 	window_show(p->window, pixels, stride);

@@ -4,6 +4,7 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "app/animation.h"
 #include "app/draw.h"
 #include "app/plan_message.h"
 #include "app/player.h"
@@ -23,8 +24,7 @@ struct virtual_process {
 	struct byte_buffer jpeg;
 	char name[BALL_MAX][BALL_NAME_SIZE];
 	billiard_draw_list_t list;
-	billiard_animation_t animation;
-	double animation_begin;			/* s, when the animation stood at its position */
+	struct animation animation;
 	bool lit;				/* the camera has the light of list; false: draw it anew */
 	billiard_plan_t plan;
 	int64_t wanted_id;			/* proposal on the table that was not played yet, 0 none */
@@ -94,12 +94,10 @@ static void play_wanted(struct virtual_process *p, double now)
 /* The projector's light as it is now. A standing picture is drawn once, a running animation each frame. */
 static void light(struct virtual_process *p, double now)
 {
-	bool animated = p->animation.keyframe_count > 0;
-	if (p->lit && !(animated && p->animation.run))
+	if (p->lit && !animation_runs(&p->animation))
 		return;
-	double t = plan_message_animation_time(&p->animation, now - p->animation_begin);
 	int width, height, stride;
-	render_draw(p->render, &p->list, animated ? &p->animation : NULL, t);
+	render_draw(p->render, &p->list, animation_is_shown(&p->animation) ? &p->animation.message : NULL, animation_time(&p->animation, now));
 	const uint32_t *pixels = render_pixels(p->render, &width, &height, &stride);
 	table_camera_light(p->camera, pixels, width, height, stride);
 	p->lit = true;
@@ -154,16 +152,9 @@ static bool on_draw(void *context, const void *message)
 static bool on_animation(void *context, const void *message)
 {
 	struct virtual_process *p = context;
-	const billiard_animation_t *animation = message;
-	if (!plan_message_animation_check(animation))
-		return false;
-	/* Repeated each second: the same again must not start it anew. */
-	if (animation->utime == p->animation.utime && plan_message_same_motion(animation, &p->animation))
-		return true;
-	p->animation = *animation;
-	p->animation_begin = process_seconds(NULL);
-	p->lit = false;
-	return true;
+	bool changed, ok = animation_take(&p->animation, message, process_seconds(NULL), &changed);
+	p->lit = p->lit && !changed;
+	return ok;
 }
 
 static bool on_plan(void *context, const void *message)
