@@ -27,8 +27,17 @@ static void put_ball(int ball, int colour, vec2 pos)
 static void put_keyframe(int ball, int event, double begin, double end, vec2 pos, vec2 vel, vec2 acc)
 {
 	billiard_plan_shot_t *shot = &plan.entries[0].shots[0];
-	plan.keyframes[plan.keyframe_count++] = (billiard_keyframe_t){.begin = begin, .end = end, .ball = (int16_t)ball,
-		.event = (int8_t)event, .phase = BALL_ROLLING, .x = pos.x, .y = pos.y, .vx = vel.x, .vy = vel.y, .ax = acc.x, .ay = acc.y};
+	plan.keyframes[plan.keyframe_count++] = (billiard_keyframe_t){.begin = begin,
+								      .end = end,
+								      .ball = (int16_t)ball,
+								      .event = (int8_t)event,
+								      .phase = BALL_ROLLING,
+								      .x = pos.x,
+								      .y = pos.y,
+								      .vx = vel.x,
+								      .vy = vel.y,
+								      .ax = acc.x,
+								      .ay = acc.y};
 	shot->keyframe_count++;
 }
 
@@ -191,15 +200,16 @@ START_TEST(proposal_shows_its_parts)
 	draw_proposal(&list, &table, &plan, 0, 0, &options);
 	ck_assert(draw_check(&list));
 	ck_assert_int_eq(list.plan_id, 7);
-	ck_assert_int_ge(count_items(DRAW_POLYLINE, false), 2);	/* cue ball to contact, red to its end */
+	ck_assert_int_ge(count_items(DRAW_POLYLINE, false), 2); /* cue ball to contact, red to its end */
 	ck_assert_int_ge(count_items(DRAW_POLYLINE, true), 1);	/* cue ball after it */
 	ck_assert_ptr_nonnull(find_text("1.2 m/s  1/2"));
 	ck_assert_ptr_nonnull(find_text(table.pocket[5].name));
-	bool pocket = false;	/* something around it, on the bed */
+	bool pocket = false; /* something around it, on the bed */
 	for (int i = 0; i < list.item_count; i++) {
 		vec2 p = item_point(&list.items[i], 0);
-		pocket |= list.items[i].kind == DRAW_POLYLINE && fabs(vec2_dist(p, table.pocket[5].centre) - 0.08) < 1e-6 &&
-			  fabs(p.x) < table.length / 2 && fabs(p.y) < table.width / 2;
+		pocket |= list.items[i].kind == DRAW_POLYLINE &&
+			  fabs(vec2_dist(p, table.pocket[5].centre) - 0.08) < 1e-6 && fabs(p.x) < table.length / 2 &&
+			  fabs(p.y) < table.width / 2;
 	}
 	ck_assert(pocket);
 }
@@ -314,7 +324,7 @@ START_TEST(path_of_a_ball_that_comes_back)
 	struct draw_path path;
 	begin_plan();
 	plan.keyframe_count = plan.entries[0].shots[0].keyframe_count = 0;
-	put_keyframe(0, EVENT_STRIKE, 0, 2, (vec2){0, 0}, (vec2){0.2, 0}, (vec2){-0.2, 0});	/* turns at x = 0.1 */
+	put_keyframe(0, EVENT_STRIKE, 0, 2, (vec2){0, 0}, (vec2){0.2, 0}, (vec2){-0.2, 0}); /* turns at x = 0.1 */
 	draw_path_of(&path, &plan, &plan.entries[0].shots[0], 0);
 	double far = 0;
 	for (int i = 0; i < path.count; i++)
@@ -373,7 +383,8 @@ START_TEST(a_break_fits)
 	for (int i = 3; i < BALL_MAX; i++)
 		put_ball(i, COLOUR_RED, (vec2){-0.6 + 0.06 * i, 0.3});
 	for (int i = 0; i < 768; i++)
-		put_keyframe(i % BALL_MAX, EVENT_BALL_BALL, i * 0.01, i * 0.01 + 1, (vec2){0.001 * i, 0.1}, (vec2){0.1, 1}, (vec2){2, -1});
+		put_keyframe(i % BALL_MAX, EVENT_BALL_BALL, i * 0.01, i * 0.01 + 1, (vec2){0.001 * i, 0.1},
+			     (vec2){0.1, 1}, (vec2){2, -1});
 	struct draw_options options = draw_options_default();
 	draw_proposal(&list, &table, &plan, 0, 0, &options);
 	ck_assert(draw_check(&list));

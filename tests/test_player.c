@@ -130,10 +130,12 @@ START_TEST(potted_cue_ball_comes_back_into_the_d)
 	table = scene_thesis_table();
 	vec2 pocket = table.pocket[0].centre;
 	ball[0] = ball_at(COLOUR_WHITE, (vec2){-0.5, -0.2});
-	ball[1] = ball_at(COLOUR_RED, (vec2){table.baulk_d_centre.x - table.baulk_d_radius / 2, 0});	/* where it would go first */
+	ball[1] = ball_at(COLOUR_RED,
+			  (vec2){table.baulk_d_centre.x - table.baulk_d_radius / 2, 0}); /* where it would go first */
 	struct virtual_table *vt = begin(&exact, false, ball, 2);
 	vec2 way = vec2_sub(pocket, ball[0].pos);
-	ck_assert_int_eq(player_play(vt, &(struct shot){.angle = atan2(way.y, way.x), .speed = 1.5}, 0, err, sizeof(err)), 0);
+	ck_assert_int_eq(
+		player_play(vt, &(struct shot){.angle = atan2(way.y, way.x), .speed = 1.5}, 0, err, sizeof(err)), 0);
 	run_to_end(vt, 0);
 	ck_assert(vt->result.cue_potted);
 	ck_assert_int_gt(vt->result.foul, 0);
@@ -172,7 +174,8 @@ START_TEST(random_game_stays_legal)
 				on[n++] = vt->ball[b];
 			}
 		ck_assert(cue);
-		ck_assert_msg(table_check_balls(&table, on, n, &first, &second, err, sizeof(err)) == 0, "shot %d: %s", i, err);
+		ck_assert_msg(table_check_balls(&table, on, n, &first, &second, err, sizeof(err)) == 0, "shot %d: %s",
+			      i, err);
 	}
 	ck_assert_int_gt((int)vt->shots, 10);
 	free(vt);
@@ -229,8 +232,15 @@ END_TEST
 
 START_TEST(bad_shots_are_refused_and_change_nothing)
 {
-	static const struct shot bad[] = {{.angle = NAN, .speed = 1}, {.speed = 0}, {.speed = -1}, {.speed = 21}, {.speed = NAN},
-		{.speed = 1, .side = 1}, {.speed = 1, .follow = NAN}, {.speed = 1, .elevation = 1.5708}, {.speed = 1, .elevation = -0.1}};
+	static const struct shot bad[] = {{.angle = NAN, .speed = 1},
+					  {.speed = 0},
+					  {.speed = -1},
+					  {.speed = 21},
+					  {.speed = NAN},
+					  {.speed = 1, .side = 1},
+					  {.speed = 1, .follow = NAN},
+					  {.speed = 1, .elevation = 1.5708},
+					  {.speed = 1, .elevation = -0.1}};
 	struct virtual_table *vt = begin_rack(&exact, false);
 	for (size_t i = 0; i < sizeof(bad) / sizeof(bad[0]); i++) {
 		ck_assert_int_eq(player_play(vt, &bad[i], 0, err, sizeof(err)), -EINVAL);

@@ -17,8 +17,10 @@ static billiard_animation_t animation;
 /* 400 px per m, the table's centre in the middle of the picture, y up. */
 static struct config_projector plain_projector(void)
 {
-	return (struct config_projector){.width = WIDTH, .height = HEIGHT,
-		.homography = {400, 0, WIDTH / 2, 0, -400, HEIGHT / 2, 0, 0, 1}, .font = "DejaVu Sans"};
+	return (struct config_projector){.width = WIDTH,
+					 .height = HEIGHT,
+					 .homography = {400, 0, WIDTH / 2, 0, -400, HEIGHT / 2, 0, 0, 1},
+					 .font = "DejaVu Sans"};
 }
 
 static struct render *begin(const struct config_projector *projector)
@@ -87,7 +89,9 @@ START_TEST(circles_follow_the_perspective)
 	for (int i = 0; i < 24; i++) {
 		vec2 p = vec2_madd(centre, 0.1, vec2_from_angle(0.1 + i * 0.26));
 		double w = h[6] * p.x + h[7] * p.y + 1;
-		ck_assert_uint_gt(pixel(render, (int)((h[0] * p.x + h[1] * p.y + h[2]) / w), (int)((h[3] * p.x + h[4] * p.y + h[5]) / w)), 0x808080);
+		ck_assert_uint_gt(pixel(render, (int)((h[0] * p.x + h[1] * p.y + h[2]) / w),
+					(int)((h[3] * p.x + h[4] * p.y + h[5]) / w)),
+				  0x808080);
 	}
 	render_destroy(render);
 }
@@ -145,8 +149,16 @@ END_TEST
 
 static void put_keyframe(int ball, double begin, double end, vec2 pos, vec2 vel, vec2 acc, int phase)
 {
-	animation.keyframes[animation.keyframe_count++] = (billiard_keyframe_t){.begin = begin, .end = end, .ball = (int16_t)ball,
-		.phase = (int8_t)phase, .x = pos.x, .y = pos.y, .vx = vel.x, .vy = vel.y, .ax = acc.x, .ay = acc.y};
+	animation.keyframes[animation.keyframe_count++] = (billiard_keyframe_t){.begin = begin,
+										.end = end,
+										.ball = (int16_t)ball,
+										.phase = (int8_t)phase,
+										.x = pos.x,
+										.y = pos.y,
+										.vx = vel.x,
+										.vy = vel.y,
+										.ax = acc.x,
+										.ay = acc.y};
 }
 
 START_TEST(animated_balls_move_by_their_keyframes)
@@ -179,7 +191,7 @@ END_TEST
 START_TEST(points_that_cannot_be_shown_are_left_out)
 {
 	struct config_projector projector = plain_projector();
-	projector.homography[6] = -2;	/* x = 0.5 is on the projector's own plane */
+	projector.homography[6] = -2; /* x = 0.5 is on the projector's own plane */
 	struct render *render = begin(&projector);
 	draw_polyline(&list, (vec2[]){{0.4999999999, 0}, {90, 0}}, 2, 0.01, 0xffffffff);
 	draw_ring(&list, (vec2){0.5, 0}, 0.1, 0.01, 0xffffffff);
@@ -211,7 +223,7 @@ START_TEST(same_list_same_bytes)
 		draw_text(&list, (vec2){-0.8, 0}, 0.055, 0xffffffff, "1.2 m/s");
 		draw_ring(&list, (vec2){0.3, 0.1}, 0.05, 0.005, 0xc0ffffff);
 		if (i == 1)
-			render_draw(render, &list, NULL, 0);	/* drawing again must leave nothing behind */
+			render_draw(render, &list, NULL, 0); /* drawing again must leave nothing behind */
 		render_draw(render, &list, NULL, 0);
 		snprintf(path[i], sizeof(path[i]), "/tmp/billiard-test-render-%d-%d.png", (int)getpid(), i);
 		ck_assert_int_eq(render_write_png(render, path[i], err, sizeof(err)), 0);

@@ -22,16 +22,24 @@ static void fill_config(void)
 {
 	memset(&config, 0, sizeof(config));
 	config.table = scene_thesis_table();
-	config.camera = (struct camera_intrinsics){.width = WIDTH, .height = HEIGHT, .fx = 687.8, .fy = 687.9, .cx = 487.2, .cy = 269.5};
-	config.markers = (struct marker_layout){.dictionary_count = 4, .dictionary_bits = 3, .side = 0.05, .height = 0.0381, .count = 4};
+	config.camera = (struct camera_intrinsics){
+		.width = WIDTH, .height = HEIGHT, .fx = 687.8, .fy = 687.9, .cx = 487.2, .cy = 269.5};
+	config.markers = (struct marker_layout){
+		.dictionary_count = 4, .dictionary_bits = 3, .side = 0.05, .height = 0.0381, .count = 4};
 	for (int i = 0; i < 4; i++) {
 		config.markers.marker[i].id = i;
 		config.markers.marker[i].centre = (vec2){i == 0 || i == 3 ? -0.8615 : 0.8605, i < 2 ? -0.543 : 0.542};
 	}
-	config.projector = (struct config_projector){.width = 960, .height = 540,
-		.homography = {450, 0, 480, 0, -450, 270, 0, 0, 1}};
-	config.virtual_table = (struct config_virtual){.exposure = 1, .projector_light = 0.35, .seed = 3, .camera_height = 1.535,
-		.camera_x = 0.006, .camera_y = -0.004, .camera_tilt_x = 0.0035, .camera_tilt_y = -0.0026};
+	config.projector = (struct config_projector){
+		.width = 960, .height = 540, .homography = {450, 0, 480, 0, -450, 270, 0, 0, 1}};
+	config.virtual_table = (struct config_virtual){.exposure = 1,
+						       .projector_light = 0.35,
+						       .seed = 3,
+						       .camera_height = 1.535,
+						       .camera_x = 0.006,
+						       .camera_y = -0.004,
+						       .camera_tilt_x = 0.0035,
+						       .camera_tilt_y = -0.0026};
 }
 
 static struct table_camera *begin(void)
@@ -103,7 +111,8 @@ END_TEST
 
 enum { RIM = 72 };
 
-/* Rim of the sphere's image, from the cone of rays that touch it: the circle of contact lies in a plane across the line of sight. */
+/* Rim of the sphere's image, from the cone of rays that touch it: the circle of contact lies in a plane across the line
+ * of sight. */
 static void silhouette(const struct camera *camera, vec2 pos, double radius, vec2 px[RIM])
 {
 	double eye[3], d[3], distance, u[3], v[3];
@@ -118,7 +127,8 @@ static void silhouette(const struct camera *camera, vec2 pos, double radius, vec
 	double ahead = radius * radius / distance, ring = radius * sqrt(1 - radius * radius / distance / distance);
 	for (int i = 0; i < RIM; i++) {
 		double c = cos(i * 2 * M_PI / RIM), s = sin(i * 2 * M_PI / RIM);
-		vec2 at = {pos.x + ahead * d[0] + ring * (c * u[0] + s * v[0]), pos.y + ahead * d[1] + ring * (c * u[1] + s * v[1])};
+		vec2 at = {pos.x + ahead * d[0] + ring * (c * u[0] + s * v[0]),
+			   pos.y + ahead * d[1] + ring * (c * u[1] + s * v[1])};
 		camera_project(camera, at, radius + ahead * d[2] + ring * (c * u[2] + s * v[2]), &px[i]);
 	}
 }
@@ -157,7 +167,8 @@ START_TEST(balls_have_the_outline_of_a_sphere)
 		table_camera_render(camera, &ball, 1, 0, &frame[1]);
 		silhouette(table_camera_truth(camera), pos, config.table.ball_radius, rim);
 		for (int k = 0; k < RIM; k++) {
-			vec2 along = vec2_unit(vec2_sub(rim[(k + 1) % RIM], rim[(k + RIM - 1) % RIM])), out = vec2_perp(along);
+			vec2 along = vec2_unit(vec2_sub(rim[(k + 1) % RIM], rim[(k + RIM - 1) % RIM])),
+			     out = vec2_perp(along);
 			vec2 across = vec2_sub(rim[k], rim[(k + RIM / 2) % RIM]);
 			out = vec2_dot(out, across) < 0 ? vec2_scale(out, -1) : out;
 			double offset = edge_offset(rim[k], out);
@@ -166,7 +177,8 @@ START_TEST(balls_have_the_outline_of_a_sphere)
 			grown += offset / RIM;
 		}
 		ck_assert_double_le(vec2_norm(shift), 0.1);
-		/* a shaded sphere is darker towards its rim, which draws the half level inside: equally much everywhere */
+		/* a shaded sphere is darker towards its rim, which draws the half level inside: equally much everywhere
+		 */
 		ck_assert_double_eq_tol(grown, -0.33, 0.05);
 	}
 	table_camera_destroy(camera);
@@ -177,7 +189,8 @@ START_TEST(potted_and_far_balls_are_not_seen)
 {
 	fill_config();
 	struct table_camera *camera = begin();
-	struct ball ball[3] = {ball_at(COLOUR_RED, (vec2){0, 0}), ball_at(COLOUR_RED, (vec2){7, 3}), ball_at(COLOUR_RED, (vec2){-0.1, -40})};
+	struct ball ball[3] = {ball_at(COLOUR_RED, (vec2){0, 0}), ball_at(COLOUR_RED, (vec2){7, 3}),
+			       ball_at(COLOUR_RED, (vec2){-0.1, -40})};
 	ball[0].phase = BALL_POTTED;
 	table_camera_render(camera, ball, 3, 0, &frame[0]);
 	table_camera_render(camera, NULL, 0, 0, &frame[1]);
@@ -200,7 +213,7 @@ START_TEST(order_of_balls_does_not_matter)
 	int worst = 0;
 	for (size_t i = 0; i < sizeof(pixels[0]); i++)
 		worst = abs(pixels[0][i] - pixels[1][i]) > worst ? abs(pixels[0][i] - pixels[1][i]) : worst;
-	ck_assert_int_le(worst, 1);	/* shadows are multiplied in another order */
+	ck_assert_int_le(worst, 1); /* shadows are multiplied in another order */
 	table_camera_destroy(camera);
 }
 END_TEST
@@ -252,7 +265,8 @@ START_TEST(light_has_its_share_and_throws_shadows)
 	table_camera_render(camera, &ball, 1, 0, &frame[0]);
 	camera_project(table_camera_truth(camera), (vec2){0.4, 0.2}, 0, &px);
 	int x = (int)px.x, y = (int)px.y;
-	double share = frame[0].data[y * frame[0].stride + 3 * x + 1] / (double)frame[1].data[y * frame[1].stride + 3 * x + 1];
+	double share =
+		frame[0].data[y * frame[0].stride + 3 * x + 1] / (double)frame[1].data[y * frame[1].stride + 3 * x + 1];
 	ck_assert_double_eq_tol(share, 1.35, 0.02);
 	/* the projector stands at -y: the ball keeps its light off the cloth at +y */
 	camera_project(table_camera_truth(camera), (vec2){0, 0.036}, 0, &shadow);

@@ -28,8 +28,8 @@ void draw_clear(billiard_draw_list_t *list)
 }
 
 /* A new item on the given points, or NULL when the list is full. */
-static billiard_draw_item_t *add(billiard_draw_list_t *list, enum draw_kind kind, enum draw_layer layer, const vec2 *point,
-				 int count)
+static billiard_draw_item_t *add(billiard_draw_list_t *list, enum draw_kind kind, enum draw_layer layer,
+				 const vec2 *point, int count)
 {
 	assert(count >= 1);
 	if (list->item_count >= DRAW_ITEM_MAX || count > DRAW_POINT_MAX - list->point_count)

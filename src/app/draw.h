@@ -26,7 +26,8 @@ bool draw_polyline(billiard_draw_list_t *list, const vec2 *point, int count, dou
 bool draw_dashed(billiard_draw_list_t *list, const vec2 *point, int count, double width, uint32_t rgba);
 bool draw_ring(billiard_draw_list_t *list, vec2 centre, double radius, double width, uint32_t rgba);
 bool draw_disc(billiard_draw_list_t *list, vec2 centre, double radius, uint32_t rgba);
-/* at: left end of the baseline, text runs along +x with its top towards +y; height: of the font's em square. Cut at 63 bytes. */
+/* at: left end of the baseline, text runs along +x with its top towards +y; height: of the font's em square. Cut at 63
+ * bytes. */
 bool draw_text(billiard_draw_list_t *list, vec2 at, double height, uint32_t rgba, const char *text);
 /* More than the width that any of the fonts in use gives that text at that height, m. */
 double draw_text_width(const char *text, double height);
@@ -37,13 +38,14 @@ uint32_t draw_ball_rgba(int colour);
 /* True when counts and indices are in range and all numbers finite: to be called on every list from the wire. */
 bool draw_check(const billiard_draw_list_t *list);
 
-/* One shot of a proposal: halos on the balls it is played from, ghost ball, solid paths of cue and object ball, dashed paths of the others, speed
- * and pocket as text. shot indexes plan->entries[entry].shots. table: for radius and pockets. No light falls on or next to a ball:
- * the camera has to see its outline. A plan from the wire whose indices are out of range leaves the list without what they name. */
-void draw_proposal(billiard_draw_list_t *list, const struct table *table, const billiard_plan_t *plan, int entry, int shot,
-		   const struct draw_options *options);
+/* One shot of a proposal: halos on the balls it is played from, ghost ball, solid paths of cue and object ball, dashed paths
+ * of the others, a mark at the pocket, speed and pocket as text. shot indexes plan->entries[entry].shots. table: for radius
+ * and pockets. No light falls on or next to a ball: the camera has to see its outline. A plan from the wire whose indices
+ * are out of range leaves the list without what they name. */
+void draw_proposal(billiard_draw_list_t *list, const struct table *table, const billiard_plan_t *plan, int entry,
+		   int shot, const struct draw_options *options);
 /* Halos only (no proposal), and a line of text at the bottom (empty: none). */
-void draw_idle(billiard_draw_list_t *list, const struct table *table, const struct ball *ball, int count, const char *note,
-	       const struct draw_options *options);
+void draw_idle(billiard_draw_list_t *list, const struct table *table, const struct ball *ball, int count,
+	       const char *note, const struct draw_options *options);
 
 #endif

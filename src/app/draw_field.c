@@ -3,13 +3,14 @@
 #include <assert.h>
 #include <string.h>
 
-/* Seen from a camera 1.6 R-lengths of the table above it, a ball in the corner hides the cloth up to 1.97 R from its foot. */
-static const double KEEP = 2.05;	/* radii */
-static const double TEXT_STEP = 0.025;	/* m between tried places */
-static const double TEXT_GAP = 0.015;	/* m between text and anything else */
-static const double TEXT_LEAST = 0.5;	/* text shrinks to this share of its height before it is left out */
-static const double TEXT_KEEP = 0.75;	/* radii beyond keep: text is broad, and detectors look around a ball */
-enum { RING_POINTS = 25 };		/* sagitta below 0.5 mm for a halo */
+/* Seen from a camera 1.6 R-lengths of the table above it, a ball in the corner hides the cloth up to 1.97 R from its
+ * foot. */
+static const double KEEP = 2.05;       /* radii */
+static const double TEXT_STEP = 0.025; /* m between tried places */
+static const double TEXT_GAP = 0.015;  /* m between text and anything else */
+static const double TEXT_LEAST = 0.5;  /* text shrinks to this share of its height before it is left out */
+static const double TEXT_KEEP = 0.75;  /* radii beyond keep: text is broad, and detectors look around a ball */
+enum { RING_POINTS = 25 };	       /* sagitta below 0.5 mm for a halo */
 
 void draw_field_init(struct draw_field *field, const struct table *table)
 {
@@ -192,7 +193,8 @@ static bool box_meets_item(const struct box *box, const billiard_draw_list_t *li
 static bool box_is_free(const struct draw_field *field, const billiard_draw_list_t *list, const struct box *box)
 {
 	const struct table *table = field->table;
-	double far = fmax(fmax(-box->low.x, box->high.x) - table->length / 2, fmax(-box->low.y, box->high.y) - table->width / 2);
+	double far = fmax(fmax(-box->low.x, box->high.x) - table->length / 2,
+			  fmax(-box->low.y, box->high.y) - table->width / 2);
 	if (far > 0)
 		return false;
 	for (int i = 0; i < field->count; i++)

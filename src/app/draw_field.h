@@ -6,14 +6,14 @@
 
 /* The balls as they lie while the picture is shown. */
 struct draw_field {
-	const struct table *table;	/* borrowed */
-	vec2 ball[BALL_MAX];		/* m */
+	const struct table *table; /* borrowed */
+	vec2 ball[BALL_MAX];	   /* m */
 	int count;
-	double keep;			/* m around a ball's centre that stay dark */
+	double keep; /* m around a ball's centre that stay dark */
 };
 
 struct draw_pen {
-	double width;			/* m */
+	double width; /* m */
 	uint32_t rgba;
 	bool dashed;
 };
@@ -31,13 +31,13 @@ bool draw_field_ring(const struct draw_field *field, billiard_draw_list_t *list,
 /* A text that goes where it disturbs nothing. */
 struct draw_label {
 	const char *text;
-	vec2 near;			/* m, where its middle should be */
-	double reach;			/* m, how far from there it may be */
-	double height;			/* m; it is drawn smaller, down to half of this, before it is left out */
+	vec2 near;     /* m, where its middle should be */
+	double reach;  /* m, how far from there it may be */
+	double height; /* m; it is drawn smaller, down to half of this, before it is left out */
 	uint32_t rgba;
 };
-/* Puts it in the nearest free place on the bed: clear of balls, pockets and everything in the list but the table's own lines. False when there is none
- * or the list is full. */
+/* Puts it in the nearest free place on the bed: clear of balls, pockets and everything in the list but the table's own
+ * lines. False when there is none or the list is full. */
 bool draw_field_text(const struct draw_field *field, billiard_draw_list_t *list, const struct draw_label *label);
 
 #endif

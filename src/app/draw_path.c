@@ -6,7 +6,7 @@
 static const double FLATNESS = 0.001;
 /* Points closer than this to the last one are left out, m. */
 static const double SPACING = 0.0005;
-static const double TIME_MAX = 600;	/* s: no shot lasts longer */
+static const double TIME_MAX = 600; /* s: no shot lasts longer */
 enum { DEPTH_MAX = 6 };
 
 static bool keyframe_ok(const billiard_keyframe_t *key)
@@ -24,11 +24,13 @@ static vec2 keyframe_at(const billiard_keyframe_t *key, double s)
 
 static void add(struct draw_path *path, vec2 point)
 {
-	if (path->count < DRAW_PATH_MAX && (path->count == 0 || vec2_dist(path->point[path->count - 1], point) > SPACING))
+	if (path->count < DRAW_PATH_MAX &&
+	    (path->count == 0 || vec2_dist(path->point[path->count - 1], point) > SPACING))
 		path->point[path->count++] = point;
 }
 
-/* Halves the time until the chord lies close enough: over dt it lies |a across the chord| dt^2 / 8 from the parabola at most. */
+/* Halves the time until the chord lies close enough: over dt it lies |a across the chord| dt^2 / 8 from the parabola at
+ * most. */
 static void add_arc(struct draw_path *path, const billiard_keyframe_t *key, double from, double to, int depth)
 {
 	vec2 end = keyframe_at(key, to), chord = vec2_unit(vec2_sub(end, keyframe_at(key, from)));
@@ -59,8 +61,9 @@ void draw_path_of(struct draw_path *path, const billiard_plan_t *plan, const bil
 {
 	path->count = 0;
 	path->contact = -1;
-	if (shot->keyframe_first < 0 || shot->keyframe_count < 0 || plan->keyframe_count < 0 || plan->keyframe_count > 768 ||
-	    shot->keyframe_first > plan->keyframe_count || shot->keyframe_count > plan->keyframe_count - shot->keyframe_first)
+	if (shot->keyframe_first < 0 || shot->keyframe_count < 0 || plan->keyframe_count < 0 ||
+	    plan->keyframe_count > 768 || shot->keyframe_first > plan->keyframe_count ||
+	    shot->keyframe_count > plan->keyframe_count - shot->keyframe_first)
 		return;
 	for (int i = 0; i < shot->keyframe_count; i++) {
 		const billiard_keyframe_t *key = &plan->keyframes[shot->keyframe_first + i];

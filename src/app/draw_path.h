@@ -8,9 +8,9 @@ enum { DRAW_PATH_MAX = 512 };
 
 /* The way of one ball: no farther than 1 mm from the true parabolas. */
 struct draw_path {
-	vec2 point[DRAW_PATH_MAX];	/* m */
+	vec2 point[DRAW_PATH_MAX]; /* m */
 	int count;
-	int contact;			/* index of the point at the first ball contact, -1 none */
+	int contact; /* index of the point at the first ball contact, -1 none */
 };
 
 /* Path of a ball in the shot's keyframes, from where it starts to move. Keyframes with bad numbers are passed over. */

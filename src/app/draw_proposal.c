@@ -7,13 +7,14 @@
 #include "app/draw_field.h"
 #include "app/draw_path.h"
 
-/* The thesis' rings are 1.9 R wide; that touches what the camera sees of a ball in the corners, which stand out to 1.97 R from its foot. */
-static const double HALO = 2.2;		/* radii */
-static const double GHOST = 1.0;	/* radii */
-static const double POCKET = 1.6;	/* pocket radii: outside the hole, inside the markers on the rails */
-static const double LINE = 0.005, THIN = 0.004;	/* m */
-static const double TEXT_HEIGHT = 0.055, POCKET_HEIGHT = 0.04, INFO_HEIGHT = 0.024;	/* m */
-static const double TEXT_REACH = 10, POCKET_REACH = 0.6, INFO_REACH = 0.2;	/* m */
+/* The thesis' rings are 1.9 R wide; that touches what the camera sees of a ball in the corners, which stand out to 1.97
+ * R from its foot. */
+static const double HALO = 2.2;			/* radii */
+static const double GHOST = 1.0;		/* radii */
+static const double POCKET = 1.6;		/* pocket radii: outside the hole, inside the markers on the rails */
+static const double LINE = 0.005, THIN = 0.004; /* m */
+static const double TEXT_HEIGHT = 0.055, POCKET_HEIGHT = 0.04, INFO_HEIGHT = 0.024; /* m */
+static const double TEXT_REACH = 10, POCKET_REACH = 0.6, INFO_REACH = 0.2;	    /* m */
 /* Left free for the text by the paths of the other balls. */
 enum { ITEMS_KEPT = 4, POINTS_KEPT = 8 };
 enum { POCKET_POINTS = 49 };
@@ -62,8 +63,9 @@ static void draw_info(const struct draw_field *field, billiard_draw_list_t *list
 
 static bool ball_lies(const struct scene *scene, int ball)
 {
-	return ball >= 0 && ball < scene->ball_count && scene->shot->start_on[ball] && isfinite(scene->shot->start_x[ball]) &&
-	       isfinite(scene->shot->start_y[ball]) && fabs(scene->shot->start_x[ball]) < 10 && fabs(scene->shot->start_y[ball]) < 10;
+	return ball >= 0 && ball < scene->ball_count && scene->shot->start_on[ball] &&
+	       isfinite(scene->shot->start_x[ball]) && isfinite(scene->shot->start_y[ball]) &&
+	       fabs(scene->shot->start_x[ball]) < 10 && fabs(scene->shot->start_y[ball]) < 10;
 }
 
 static vec2 ball_start(const struct scene *scene, int ball)
@@ -81,7 +83,8 @@ static int cue_ball(const struct scene *scene)
 
 static bool has_room(const billiard_draw_list_t *list, int points)
 {
-	return list->item_count < DRAW_ITEM_MAX - ITEMS_KEPT && list->point_count + points < DRAW_POINT_MAX - POINTS_KEPT;
+	return list->item_count < DRAW_ITEM_MAX - ITEMS_KEPT &&
+	       list->point_count + points < DRAW_POINT_MAX - POINTS_KEPT;
 }
 
 /* Parts of a path that cannot be drawn whole are better not drawn at all. */
@@ -107,7 +110,8 @@ static void draw_cue(const struct scene *scene, int cue)
 		return;
 	draw_ghost(scene, path.point[path.contact]);
 	if (scene->options->other_paths)
-		stroke(scene, path.point + path.contact, path.count - path.contact, &(struct draw_pen){THIN, CUE_RGBA, true});
+		stroke(scene, path.point + path.contact, path.count - path.contact,
+		       &(struct draw_pen){THIN, CUE_RGBA, true});
 }
 
 static void draw_object(const struct scene *scene, int ball, bool dashed)
@@ -160,7 +164,8 @@ static void draw_pocket_arc(const struct scene *scene, const struct pocket *pock
 	/* from the side that looks away from the bed, so that what lies on the bed is one piece */
 	double begin = atan2(-pocket->normal.y, -pocket->normal.x);
 	for (int i = 0; i < POCKET_POINTS; i++) {
-		vec2 p = vec2_madd(pocket->centre, POCKET * pocket->radius, vec2_from_angle(begin + i * 2 * acos(-1) / (POCKET_POINTS - 1)));
+		vec2 p = vec2_madd(pocket->centre, POCKET * pocket->radius,
+				   vec2_from_angle(begin + i * 2 * acos(-1) / (POCKET_POINTS - 1)));
 		if (fabs(p.x) < scene->table->length / 2 && fabs(p.y) < scene->table->width / 2)
 			arc[count++] = p;
 	}
@@ -185,7 +190,8 @@ static void draw_labels(const struct scene *scene, int number, int shots)
 	if (shots > 1)
 		snprintf(text + length, sizeof(text) - (size_t)length, "  %d/%d", number, shots);
 	vec2 at_cue = ball_lies(scene, cue) ? ball_start(scene, cue) : (vec2){0, 0};
-	draw_field_text(&scene->field, scene->list, &(struct draw_label){text, at_cue, TEXT_REACH, TEXT_HEIGHT, TEXT_RGBA});
+	draw_field_text(&scene->field, scene->list,
+			&(struct draw_label){text, at_cue, TEXT_REACH, TEXT_HEIGHT, TEXT_RGBA});
 	if (pocket < 0 || pocket >= scene->table->pocket_count)
 		return;
 	const struct pocket *p = &scene->table->pocket[pocket];
@@ -219,8 +225,8 @@ static bool scene_find_shot(struct scene *scene, int entry, int shot)
 	return true;
 }
 
-void draw_proposal(billiard_draw_list_t *list, const struct table *table, const billiard_plan_t *plan, int entry, int shot,
-		   const struct draw_options *options)
+void draw_proposal(billiard_draw_list_t *list, const struct table *table, const billiard_plan_t *plan, int entry,
+		   int shot, const struct draw_options *options)
 {
 	struct scene scene = {.list = list, .table = table, .plan = plan, .options = options};
 	draw_clear(list);
@@ -243,8 +249,8 @@ void draw_proposal(billiard_draw_list_t *list, const struct table *table, const 
 		draw_infos(&scene);
 }
 
-void draw_idle(billiard_draw_list_t *list, const struct table *table, const struct ball *ball, int count, const char *note,
-	       const struct draw_options *options)
+void draw_idle(billiard_draw_list_t *list, const struct table *table, const struct ball *ball, int count,
+	       const char *note, const struct draw_options *options)
 {
 	struct draw_field field;
 	draw_clear(list);
@@ -257,7 +263,8 @@ void draw_idle(billiard_draw_list_t *list, const struct table *table, const stru
 	if (options->halo)
 		draw_halos(&field, list);
 	if (note[0])
-		draw_field_text(&field, list, &(struct draw_label){note, {0, -table->width / 2}, TEXT_REACH, TEXT_HEIGHT, TEXT_RGBA});
+		draw_field_text(&field, list,
+				&(struct draw_label){note, {0, -table->width / 2}, TEXT_REACH, TEXT_HEIGHT, TEXT_RGBA});
 	for (int i = 0; options->info && i < count; i++)
 		if (ball[i].phase != BALL_POTTED)
 			draw_info(&field, list, ball[i].pos, ball_colour_name(ball[i].colour));

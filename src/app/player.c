@@ -6,11 +6,11 @@
 #include <string.h>
 
 static const double PI = 3.14159265358979323846;
-static const double SPEED_MIN = 0.01, SPEED_MAX = 20;	/* m/s */
-static const double ELEVATION_MAX = 1.57;	/* rad */
-static const double TIME_MAX = 120;	/* s: balls rest long before */
-static const double PLACE_STEP = 0.01, PLACE_GAP = 0.002;	/* m, for the cue ball in hand */
-static const double RACK_GAP = 0.001;	/* m between pink and the first red */
+static const double SPEED_MIN = 0.01, SPEED_MAX = 20;	  /* m/s */
+static const double ELEVATION_MAX = 1.57;		  /* rad */
+static const double TIME_MAX = 120;			  /* s: balls rest long before */
+static const double PLACE_STEP = 0.01, PLACE_GAP = 0.002; /* m, for the cue ball in hand */
+static const double RACK_GAP = 0.001;			  /* m between pink and the first red */
 
 /* ---- positions ---- */
 
@@ -22,7 +22,8 @@ void player_rack(const struct table *table, struct ball ball[BALL_MAX])
 	vec2 apex = vec2_add(table->spot[COLOUR_PINK], (vec2){d + RACK_GAP, 0});
 	for (int row = 0; row < 5; row++)
 		for (int k = 0; k <= row; k++)
-			ball[n++] = ball_at(COLOUR_RED, vec2_add(apex, (vec2){row * d * sqrt(0.75), (k - 0.5 * row) * d}));
+			ball[n++] =
+				ball_at(COLOUR_RED, vec2_add(apex, (vec2){row * d * sqrt(0.75), (k - 0.5 * row) * d}));
 	for (int colour = COLOUR_YELLOW; colour <= COLOUR_BLACK; colour++)
 		ball[n++] = ball_at((enum ball_colour)colour, table->spot[colour]);
 	assert(n == BALL_MAX);
@@ -106,13 +107,14 @@ static struct shot with_error(const struct virtual_table *vt, const struct shot 
 static bool shot_ok(const struct shot *shot)
 {
 	return isfinite(shot->angle) && shot->speed > 0 && shot->speed <= SPEED_MAX &&
-	       shot->side * shot->side + shot->follow * shot->follow < 1 && shot->elevation >= 0 && shot->elevation < ELEVATION_MAX;
+	       shot->side * shot->side + shot->follow * shot->follow < 1 && shot->elevation >= 0 &&
+	       shot->elevation < ELEVATION_MAX;
 }
 
 /* ---- shots ---- */
 
-void player_init(struct virtual_table *vt, const struct table *table, const struct model *model, const struct config_virtual *def,
-		 bool rules, const struct ball *ball, int count)
+void player_init(struct virtual_table *vt, const struct table *table, const struct model *model,
+		 const struct config_virtual *def, bool rules, const struct ball *ball, int count)
 {
 	assert(table_check_balls(table, ball, count, &(int){0}, &(int){0}, (char[200]){0}, 200) == 0);
 	memset(vt, 0, sizeof(*vt));

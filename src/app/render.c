@@ -20,7 +20,7 @@ struct render {
 
 enum { SIZE_MAX_PX = 8192, CIRCLE_POINTS = 72 };
 static const double PI = 3.14159265358979323846;
-static const double ANIMATED_WIDTH = 0.004;	/* m */
+static const double ANIMATED_WIDTH = 0.004; /* m */
 
 static int fail(char *err, size_t err_size, int code, const char *reason)
 {
@@ -46,7 +46,8 @@ static bool jacobian(const struct render *render, vec2 p, vec2 *along_x, vec2 *a
 {
 	const double step = 1e-3;
 	vec2 o, x, y;
-	if (!to_px(render, p, &o) || !to_px(render, (vec2){p.x + step, p.y}, &x) || !to_px(render, (vec2){p.x, p.y + step}, &y))
+	if (!to_px(render, p, &o) || !to_px(render, (vec2){p.x + step, p.y}, &x) ||
+	    !to_px(render, (vec2){p.x, p.y + step}, &y))
 		return false;
 	*along_x = vec2_scale(vec2_sub(x, o), 1 / step);
 	*along_y = vec2_scale(vec2_sub(y, o), 1 / step);
@@ -115,7 +116,8 @@ static void draw_text_item(const struct render *render, const billiard_draw_item
 	if (!to_px(render, at, &px) || !jacobian(render, at, &x, &y) || !(item->radius > 0))
 		return;
 	/* font space: one unit is one em, its y axis runs down */
-	cairo_matrix_t matrix = {x.x * item->radius, x.y * item->radius, -y.x * item->radius, -y.y * item->radius, 0, 0};
+	cairo_matrix_t matrix = {
+		x.x * item->radius, x.y * item->radius, -y.x * item->radius, -y.y * item->radius, 0, 0};
 	if (fabs(matrix.xx * matrix.yy - matrix.xy * matrix.yx) < 1)
 		return;
 	cairo_set_font_matrix(render->cairo, &matrix);
@@ -206,13 +208,15 @@ static void draw_animation(const struct render *render, const billiard_animation
 
 static int check_projector(const struct config_projector *projector, char *err, size_t err_size)
 {
-	if (projector->width < 1 || projector->height < 1 || projector->width > SIZE_MAX_PX || projector->height > SIZE_MAX_PX)
+	if (projector->width < 1 || projector->height < 1 || projector->width > SIZE_MAX_PX ||
+	    projector->height > SIZE_MAX_PX)
 		return fail(err, err_size, -EINVAL, "width and height must be 1 to 8192 px");
 	const double *h = projector->homography;
 	for (int i = 0; i < 9; i++)
 		if (!isfinite(h[i]))
 			return fail(err, err_size, -EINVAL, "homography is not finite");
-	double det = h[0] * (h[4] * h[8] - h[5] * h[7]) - h[1] * (h[3] * h[8] - h[5] * h[6]) + h[2] * (h[3] * h[7] - h[4] * h[6]);
+	double det = h[0] * (h[4] * h[8] - h[5] * h[7]) - h[1] * (h[3] * h[8] - h[5] * h[6]) +
+		     h[2] * (h[3] * h[7] - h[4] * h[6]);
 	if (det == 0 || h[8] <= 0)
 		return fail(err, err_size, -EINVAL, "homography is singular or puts the table behind the projector");
 	return 0;
@@ -263,7 +267,8 @@ void render_destroy(struct render *render)
 
 /* ---- pictures ---- */
 
-void render_draw(struct render *render, const billiard_draw_list_t *list, const billiard_animation_t *animation, double t)
+void render_draw(struct render *render, const billiard_draw_list_t *list, const billiard_animation_t *animation,
+		 double t)
 {
 	assert(draw_check(list) && isfinite(t));
 	cairo_set_source_rgb(render->cairo, 0, 0, 0);

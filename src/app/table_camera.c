@@ -9,11 +9,12 @@
 
 #include "app/table_camera_state.h"
 
-enum { SAMPLES = 8 };	/* across a pixel on edges of the still scene */
+enum { SAMPLES = 8 }; /* across a pixel on edges of the still scene */
 static const double PI = 3.14159265358979323846;
-static const float VIGNETTE = 0.12f;	/* light lost in the picture's corners */
-static const double FAR = 1000;	/* m: rays that miss the plane of the bed */
-/* Lamps, as shares of the table's length: projector and lamp of the thesis' room throw shadows to +y and to the left. */
+static const float VIGNETTE = 0.12f; /* light lost in the picture's corners */
+static const double FAR = 1000;	     /* m: rays that miss the plane of the bed */
+/* Lamps, as shares of the table's length: projector and lamp of the thesis' room throw shadows to +y and to the left.
+ */
 static const double PROJECTOR_AT[3] = {-0.05, -0.65, 1.0}, LAMP_AT[3] = {0.16, 0.06, 1.25};
 /* The projector's white on green cloth, by colour. */
 static const float PROJECTOR_WHITE[3] = {0.75f, 1.0f, 1.1f};
@@ -29,7 +30,8 @@ static void multiply(const double a[9], const double b[9], double out[9])
 /* Looks straight down with +x to the right, then turned about its own x and y axes. */
 static struct camera_pose pose_of(const struct config_virtual *def, double marker_height)
 {
-	double cx = cos(def->camera_tilt_x), sx = sin(def->camera_tilt_x), cy = cos(def->camera_tilt_y), sy = sin(def->camera_tilt_y);
+	double cx = cos(def->camera_tilt_x), sx = sin(def->camera_tilt_x), cy = cos(def->camera_tilt_y),
+	       sy = sin(def->camera_tilt_y);
 	const double down[9] = {1, 0, 0, 0, -1, 0, 0, 0, -1};
 	const double about_x[9] = {1, 0, 0, 0, cx, -sx, 0, sx, cx}, about_y[9] = {cy, 0, sy, 0, 1, 0, -sy, 0, cy};
 	const double eye[3] = {def->camera_x, def->camera_y, def->camera_height + marker_height};
@@ -77,7 +79,7 @@ static void map_cloth(struct table_camera *camera)
 }
 
 struct footprint {
-	vec2 at, right, down;	/* middle of a pixel on z = 0, and the way to the next pixels */
+	vec2 at, right, down; /* middle of a pixel on z = 0, and the way to the next pixels */
 };
 
 static vec2 cloth_at(const struct table_camera *camera, int x, int y)
@@ -90,7 +92,8 @@ static struct footprint footprint_of(const struct table_camera *camera, int x, i
 {
 	int last_x = camera->camera.in.width - 1, last_y = camera->camera.in.height - 1;
 	int x0 = x < last_x ? x : x - 1, y0 = y < last_y ? y : y - 1;
-	return (struct footprint){cloth_at(camera, x, y), vec2_sub(cloth_at(camera, x0 + 1, y), cloth_at(camera, x0, y)),
+	return (struct footprint){cloth_at(camera, x, y),
+				  vec2_sub(cloth_at(camera, x0 + 1, y), cloth_at(camera, x0, y)),
 				  vec2_sub(cloth_at(camera, x, y0 + 1), cloth_at(camera, x, y0))};
 }
 
@@ -199,7 +202,8 @@ static void light_table(struct table_camera *camera)
 		if (!sample(&camera->picture, camera->spot[2 * i], camera->spot[2 * i + 1], rgb))
 			continue;
 		for (size_t c = 0; c < 3; c++)
-			camera->lit[3 * i + 2 - c] = to_level((float)camera->base[3 * i + 2 - c] / LEVEL * (1 + share * rgb[c]));
+			camera->lit[3 * i + 2 - c] =
+				to_level((float)camera->base[3 * i + 2 - c] / LEVEL * (1 + share * rgb[c]));
 	}
 }
 
@@ -209,8 +213,8 @@ void table_camera_light(struct table_camera *camera, const uint32_t *pixels, int
 	if (pixels) {
 		assert(width == camera->picture.width && height == camera->picture.height && stride >= 4 * width);
 		for (int y = 0; y < height; y++)
-			memcpy(camera->picture.pixels + (ptrdiff_t)y * width, (const char *)pixels + (ptrdiff_t)y * stride,
-			       (size_t)width * 4);
+			memcpy(camera->picture.pixels + (ptrdiff_t)y * width,
+			       (const char *)pixels + (ptrdiff_t)y * stride, (size_t)width * 4);
 	}
 	light_table(camera);
 }
@@ -237,7 +241,8 @@ static void fill_noise(struct table_camera *camera)
 	}
 }
 
-/* The lens spreads a point over 1 2 1 / 4 pixels both ways; column holds the row already spread downwards, in LEVEL * 4. */
+/* The lens spreads a point over 1 2 1 / 4 pixels both ways; column holds the row already spread downwards, in LEVEL
+ * * 4. */
 static void blur_down(const uint16_t *above, const uint16_t *row, const uint16_t *below, int count, uint32_t *column)
 {
 	for (int i = 0; i < count; i++)
@@ -272,7 +277,8 @@ static void expose(const struct table_camera *camera, uint64_t frame, struct ima
 	}
 }
 
-void table_camera_render(struct table_camera *camera, const struct ball *ball, int count, uint64_t frame, struct image *out)
+void table_camera_render(struct table_camera *camera, const struct ball *ball, int count, uint64_t frame,
+			 struct image *out)
 {
 	int width = camera->camera.in.width, height = camera->camera.in.height;
 	assert(out->width == width && out->height == height && out->stride >= 3 * width);
@@ -288,7 +294,8 @@ static int check(const struct config *config, char *err, size_t err_size)
 {
 	const char *reason = NULL;
 	const struct config_virtual *v = &config->virtual_table;
-	if (config->camera.width < 2 || config->camera.height < 2 || config->camera.width > 8192 || config->camera.height > 8192)
+	if (config->camera.width < 2 || config->camera.height < 2 || config->camera.width > 8192 ||
+	    config->camera.height > 8192)
 		reason = "camera: width and height must be 2 to 8192 px";
 	else if (!(config->camera.fx > 0 && config->camera.fy > 0))
 		reason = "camera: fx and fy must be positive";
@@ -316,8 +323,8 @@ static bool take_memory(struct table_camera *camera)
 	camera->column = malloc(3 * (size_t)camera->camera.in.width * sizeof(*camera->column));
 	camera->noise = malloc(NOISE_COUNT * sizeof(*camera->noise));
 	picture->pixels = malloc((size_t)picture->width * (size_t)picture->height * 4);
-	return camera->cloth && camera->spot && camera->surface && camera->base && camera->lit && camera->work && camera->column &&
-	       camera->noise && picture->pixels;
+	return camera->cloth && camera->spot && camera->surface && camera->base && camera->lit && camera->work &&
+	       camera->column && camera->noise && picture->pixels;
 }
 
 static void set_up(struct table_camera *camera, const struct config *config)
@@ -326,7 +333,8 @@ static void set_up(struct table_camera *camera, const struct config *config)
 	camera->projector = config->projector;
 	camera->def = config->virtual_table;
 	camera->camera = (struct camera){config->camera, pose_of(&config->virtual_table, config->markers.height)};
-	camera->picture = (struct picture){.width = config->projector.width, .height = config->projector.height, .dark = true};
+	camera->picture =
+		(struct picture){.width = config->projector.width, .height = config->projector.height, .dark = true};
 	for (int i = 0; i < 3; i++) {
 		camera->projector_at[i] = PROJECTOR_AT[i] * config->table.length;
 		camera->lamp_at[i] = LAMP_AT[i] * config->table.length;

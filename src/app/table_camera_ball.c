@@ -1,3 +1,4 @@
+#include <assert.h>
 #include <math.h>
 #include <string.h>
 
@@ -5,48 +6,68 @@
 
 /* Balls are drawn from the farthest to the nearest; each pixel's ray is cut with the sphere itself. */
 
-enum { RIM_SAMPLES = 8 };	/* across a pixel on a ball's rim */
+enum { RIM_SAMPLES = 8 }; /* across a pixel on a ball's rim */
 
-typedef struct {
-	double x, y, z;
-} vec3;	/* m */
+struct vec3 {
+	double x, y, z; /* m */
+};
 
 struct sphere {
-	vec3 centre;
+	struct vec3 centre;
 	double radius;
-	float albedo[3];	/* red, green, blue in grey levels under full light */
-	float room[3];		/* the room's light at its place */
+	float albedo[3]; /* red, green, blue in grey levels under full light */
+	float room[3];	 /* the room's light at its place */
 	float gain;
 };
 
 struct box {
-	int x0, y0, x1, y1;	/* px, the last ones outside */
+	int x0, y0, x1, y1; /* px, the last ones outside */
 };
 
 /* Light on a ball: from everywhere, from the lamp, from the projector's black. */
 static const float AMBIENT = 0.52f, LAMP = 0.40f, GLOW = 0.16f;
 /* What of the cloth's light each source gives, by colour: it is missing in a ball's shadow. */
 static const float LAMP_SHARE[3] = {0.28f, 0.26f, 0.22f}, GLOW_SHARE[3] = {0.12f, 0.18f, 0.26f};
-static const double LAMP_SOFT = 0.10, GLOW_SOFT = 0.03;	/* half width of the penumbra, in radii */
-static const float CONTACT = 0.40f;	/* light lost right at the foot */
-static const double SHADOW_REACH = 3.2;	/* radii */
+static const double LAMP_SOFT = 0.10, GLOW_SOFT = 0.03; /* half width of the penumbra, in radii */
+static const float CONTACT = 0.40f;			/* light lost right at the foot */
+static const double SHADOW_REACH = 3.2;			/* radii */
 static const float SHINE_LAMP = 210, SHINE_GLOW = 150;	/* grey levels */
 static const float SHINE_POWER = 420;
 
 /* ---- vectors ---- */
 
-static vec3 sub(vec3 a, vec3 b) { return (vec3){a.x - b.x, a.y - b.y, a.z - b.z}; }
-static vec3 madd(vec3 a, double k, vec3 b) { return (vec3){a.x + k * b.x, a.y + k * b.y, a.z + k * b.z}; }
-static double dot(vec3 a, vec3 b) { return a.x * b.x + a.y * b.y + a.z * b.z; }
-static vec3 unit(vec3 a) { double k = 1 / sqrt(dot(a, a)); return (vec3){k * a.x, k * a.y, k * a.z}; }
-static vec3 from_array(const double v[3]) { return (vec3){v[0], v[1], v[2]}; }
+static struct vec3 sub(struct vec3 a, struct vec3 b)
+{
+	return (struct vec3){a.x - b.x, a.y - b.y, a.z - b.z};
+}
+
+static struct vec3 madd(struct vec3 a, double k, struct vec3 b)
+{
+	return (struct vec3){a.x + k * b.x, a.y + k * b.y, a.z + k * b.z};
+}
+
+static double dot(struct vec3 a, struct vec3 b)
+{
+	return a.x * b.x + a.y * b.y + a.z * b.z;
+}
+
+static struct vec3 unit(struct vec3 a)
+{
+	double k = 1 / sqrt(dot(a, a));
+	return (struct vec3){k * a.x, k * a.y, k * a.z};
+}
+
+static struct vec3 from_array(const double v[3])
+{
+	return (struct vec3){v[0], v[1], v[2]};
+}
 
 /* ---- shadows on the cloth ---- */
 
 /* 0 in the light, 1 where the sphere hides the whole lamp. */
-static double hidden(const struct sphere *sphere, vec3 p, vec3 lamp, double soft)
+static double hidden(const struct sphere *sphere, struct vec3 p, struct vec3 lamp, double soft)
 {
-	vec3 way = unit(sub(lamp, p)), to = sub(sphere->centre, p);
+	struct vec3 way = unit(sub(lamp, p)), to = sub(sphere->centre, p);
 	double along = dot(to, way), off = sqrt(fmax(0, dot(to, to) - along * along)) / sphere->radius;
 	if (along <= 0 || off >= 1 + soft)
 		return 0;
@@ -56,7 +77,7 @@ static double hidden(const struct sphere *sphere, vec3 p, vec3 lamp, double soft
 
 static void shade_pixel(struct table_camera *camera, const struct sphere *sphere, int i)
 {
-	vec3 p = {camera->cloth[2 * i], camera->cloth[2 * i + 1], 0}, foot = sub(p, sphere->centre);
+	struct vec3 p = {camera->cloth[2 * i], camera->cloth[2 * i + 1], 0}, foot = sub(p, sphere->centre);
 	double lamp = hidden(sphere, p, from_array(camera->lamp_at), LAMP_SOFT);
 	double glow = hidden(sphere, p, from_array(camera->projector_at), GLOW_SOFT);
 	double far = (foot.x * foot.x + foot.y * foot.y) / (sphere->radius * sphere->radius);
@@ -75,7 +96,7 @@ static void shade_pixel(struct table_camera *camera, const struct sphere *sphere
 }
 
 /* Pixels that may show any of the cube around the place; empty when it is out of the picture. */
-static struct box box_around(const struct table_camera *camera, vec3 centre, double half, double half_z)
+static struct box box_around(const struct table_camera *camera, struct vec3 centre, double half, double half_z)
 {
 	int width = camera->camera.in.width, height = camera->camera.in.height;
 	double x0 = width, y0 = height, x1 = -1, y1 = -1;
@@ -85,13 +106,13 @@ static struct box box_around(const struct table_camera *camera, vec3 centre, dou
 			return (struct box){0};
 		x0 = fmin(x0, px.x), y0 = fmin(y0, px.y), x1 = fmax(x1, px.x), y1 = fmax(y1, px.y);
 	}
-	return (struct box){(int)fmax(0, floor(x0) - 1), (int)fmax(0, floor(y0) - 1), (int)fmin(width, ceil(x1) + 2),
-			    (int)fmin(height, ceil(y1) + 2)};
+	return (struct box){(int)fmin(width, fmax(0, floor(x0) - 1)), (int)fmin(height, fmax(0, floor(y0) - 1)),
+			    (int)fmax(0, fmin(width, ceil(x1) + 2)), (int)fmax(0, fmin(height, ceil(y1) + 2))};
 }
 
 static void draw_shadow(struct table_camera *camera, const struct sphere *sphere)
 {
-	vec3 foot = {sphere->centre.x, sphere->centre.y, 0};
+	struct vec3 foot = {sphere->centre.x, sphere->centre.y, 0};
 	struct box box = box_around(camera, foot, SHADOW_REACH * sphere->radius, 0);
 	for (int y = box.y0; y < box.y1; y++)
 		for (int x = box.x0; x < box.x1; x++) {
@@ -104,23 +125,24 @@ static void draw_shadow(struct table_camera *camera, const struct sphere *sphere
 /* ---- balls ---- */
 
 static const float ALBEDO[COLOUR_COUNT][3] = {
-	[COLOUR_WHITE] = {255, 248, 226},  [COLOUR_RED] = {238, 8, 26},	   [COLOUR_YELLOW] = {255, 222, 26},
-	[COLOUR_GREEN] = {14, 158, 166},   [COLOUR_BROWN] = {214, 64, 42}, [COLOUR_BLUE] = {8, 148, 232},
-	[COLOUR_PINK] = {255, 128, 152},   [COLOUR_BLACK] = {50, 32, 44},  [COLOUR_UNKNOWN] = {160, 160, 160},
+	[COLOUR_WHITE] = {255, 248, 226}, [COLOUR_RED] = {238, 8, 26},	  [COLOUR_YELLOW] = {255, 222, 26},
+	[COLOUR_GREEN] = {14, 158, 166},  [COLOUR_BROWN] = {214, 64, 42}, [COLOUR_BLUE] = {8, 148, 232},
+	[COLOUR_PINK] = {255, 128, 152},  [COLOUR_BLACK] = {50, 32, 44},  [COLOUR_UNKNOWN] = {160, 160, 160},
 };
 
 /* Blinn and Phong: how much of a lamp the surface mirrors into the eye. */
-static float shine(vec3 normal, vec3 to_lamp, vec3 to_eye)
+static float shine(struct vec3 normal, struct vec3 to_lamp, struct vec3 to_eye)
 {
 	double k = dot(normal, unit(madd(to_lamp, 1, to_eye)));
 	return k > 0.95 ? powf((float)k, SHINE_POWER) : 0;
 }
 
-static void shade_ball(const struct table_camera *camera, const struct sphere *sphere, vec3 at, vec3 normal, vec3 eye,
-		       float rgb[3])
+static void shade_ball(const struct table_camera *camera, const struct sphere *sphere, struct vec3 at,
+		       struct vec3 normal, struct vec3 eye, float rgb[3])
 {
-	vec3 to_lamp = unit(sub(from_array(camera->lamp_at), at)), to_glow = unit(sub(from_array(camera->projector_at), at));
-	vec3 to_eye = unit(sub(eye, at));
+	struct vec3 to_lamp = unit(sub(from_array(camera->lamp_at), at)),
+		    to_glow = unit(sub(from_array(camera->projector_at), at));
+	struct vec3 to_eye = unit(sub(eye, at));
 	float lamp = (float)fmax(0, dot(normal, to_lamp)), glow = (float)fmax(0, dot(normal, to_glow)), picture[3];
 	float mirrored = SHINE_LAMP * shine(normal, to_lamp, to_eye) + SHINE_GLOW * shine(normal, to_glow, to_eye);
 	table_camera_picture_at(camera, (vec2){at.x, at.y}, at.z, picture);
@@ -133,17 +155,17 @@ static void shade_ball(const struct table_camera *camera, const struct sphere *s
 /* A ray from the eye: where it passes the ball. */
 struct pass {
 	double distance;	/* of the ray from the centre, radii */
-	vec3 at, normal;	/* where it enters; beside the ball the nearest point of its rim */
+	struct vec3 at, normal; /* where it enters; beside the ball the nearest point of its rim */
 };
 
-static struct pass pass_of(const struct sphere *sphere, vec3 eye, vec2 cloth)
+static struct pass pass_of(const struct sphere *sphere, struct vec3 eye, vec2 cloth)
 {
-	vec3 way = unit(sub((vec3){cloth.x, cloth.y, 0}, eye)), to = sub(sphere->centre, eye);
+	struct vec3 way = unit(sub((struct vec3){cloth.x, cloth.y, 0}, eye)), to = sub(sphere->centre, eye);
 	double along = dot(to, way);
-	vec3 nearest = sub(madd(eye, along, way), sphere->centre);
+	struct vec3 nearest = sub(madd(eye, along, way), sphere->centre);
 	double off2 = dot(nearest, nearest), r2 = sphere->radius * sphere->radius;
 	struct pass pass = {.distance = sqrt(off2 / r2)};
-	vec3 out = off2 < r2 ? madd(nearest, -sqrt(r2 - off2), way) : nearest;
+	struct vec3 out = off2 < r2 ? madd(nearest, -sqrt(r2 - off2), way) : nearest;
 	pass.normal = unit(out);
 	pass.at = madd(sphere->centre, sphere->radius, pass.normal);
 	return pass;
@@ -156,7 +178,7 @@ static vec2 cloth_of(const struct table_camera *camera, int x, int y)
 }
 
 /* Share of the pixel that the ball covers. */
-static float coverage(const struct table_camera *camera, const struct sphere *sphere, vec3 eye, int x, int y)
+static float coverage(const struct table_camera *camera, const struct sphere *sphere, struct vec3 eye, int x, int y)
 {
 	int x0 = x > 0 ? x - 1 : x, y0 = y > 0 ? y - 1 : y;
 	vec2 at = cloth_of(camera, x, y), right = vec2_sub(cloth_of(camera, x0 + 1, y), cloth_of(camera, x0, y));
@@ -178,10 +200,10 @@ static void blend(struct table_camera *camera, int i, const float rgb[3], float 
 	}
 }
 
-static void draw_ball(struct table_camera *camera, struct sphere *sphere, vec3 eye)
+static void draw_ball(struct table_camera *camera, struct sphere *sphere, struct vec3 eye)
 {
 	struct box box = box_around(camera, sphere->centre, sphere->radius, sphere->radius);
-	vec3 to = sub(sphere->centre, eye);
+	struct vec3 to = sub(sphere->centre, eye);
 	/* half a pixel's diagonal at the ball, in radii, and a little more for the slant in the corners */
 	double rim = 0.95 * sqrt(dot(to, to)) / fmin(camera->camera.in.fx, camera->camera.in.fy) / sphere->radius;
 	for (int y = box.y0; y < box.y1; y++)
@@ -199,20 +221,22 @@ static void draw_ball(struct table_camera *camera, struct sphere *sphere, vec3 e
 }
 
 /* The balls that are seen, the farthest from the eye first. */
-static int sort_spheres(const struct table_camera *camera, const struct ball *ball, int count, vec3 eye, struct sphere *out)
+static int sort_spheres(const struct table_camera *camera, const struct ball *ball, int count, struct vec3 eye,
+			struct sphere *out)
 {
 	int n = 0;
 	for (int i = 0; i < count; i++) {
-		if (ball[i].phase == BALL_POTTED || !vec2_is_finite(ball[i].pos))
+		assert(ball_is_finite(&ball[i]) && ball[i].colour >= 0 && ball[i].colour < COLOUR_COUNT);
+		if (ball[i].phase == BALL_POTTED)
 			continue;
 		struct sphere sphere = {.centre = {ball[i].pos.x, ball[i].pos.y, camera->table.ball_radius},
 					.radius = camera->table.ball_radius};
 		memcpy(sphere.albedo, ALBEDO[ball[i].colour], sizeof(sphere.albedo));
 		table_scene_light(&camera->scene, ball[i].pos, sphere.room);
-		vec3 to = sub(sphere.centre, eye);
+		struct vec3 to = sub(sphere.centre, eye);
 		int k = n++;
 		for (; k > 0; k--) {
-			vec3 other = sub(out[k - 1].centre, eye);
+			struct vec3 other = sub(out[k - 1].centre, eye);
 			if (dot(other, other) >= dot(to, to))
 				break;
 			out[k] = out[k - 1];
@@ -225,7 +249,7 @@ static int sort_spheres(const struct table_camera *camera, const struct ball *ba
 void table_camera_draw_balls(struct table_camera *camera, const struct ball *ball, int count)
 {
 	struct sphere sphere[BALL_MAX];
-	vec3 eye = from_array(camera->scene.eye);
+	struct vec3 eye = from_array(camera->scene.eye);
 	int n = sort_spheres(camera, ball, count, eye, sphere);
 	for (int i = 0; i < n; i++)
 		draw_shadow(camera, &sphere[i]);

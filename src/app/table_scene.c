@@ -5,18 +5,18 @@
 
 /* Sizes and colours as on the thesis' photographs. m, grey levels. */
 static const double CUSHION_WIDTH = 0.036, RAIL_WIDTH = 0.075;
-static const double HOLE_MORE = 0.006, CASTING_MORE = 0.016;	/* beyond a pocket's radius */
-static const double CORNER_ALONG = 0.052, CORNER_ACROSS = 0.032;	/* casting of a corner, from the noses' corner */
-static const double MOUTH_REACH = 0.15;	/* of a pocket's mouth from its centre, at most */
-static const double MARKER_BORDER = 0.22;	/* white paper around a marker, in sides */
+static const double HOLE_MORE = 0.006, CASTING_MORE = 0.016;	 /* beyond a pocket's radius */
+static const double CORNER_ALONG = 0.052, CORNER_ACROSS = 0.032; /* casting of a corner, from the noses' corner */
+static const double MOUTH_REACH = 0.15;				 /* of a pocket's mouth from its centre, at most */
+static const double MARKER_BORDER = 0.22;			 /* white paper around a marker, in sides */
 static const double DIAMOND = 0.0045;
-static const double LINE_HALF = 0.0006, LINE_FADE = 0.0014;	/* baulk line and D */
-static const double NOSE_SHADE = 0.012;	/* width of the darker strip of cloth along the noses */
+static const double LINE_HALF = 0.0006, LINE_FADE = 0.0014; /* baulk line and D */
+static const double NOSE_SHADE = 0.012;			    /* width of the darker strip of cloth along the noses */
 
 static const float COLOURS[][3] = {
-	[SURFACE_FLOOR] = {16, 13, 17},	   [SURFACE_BED] = {131, 154, 146},   [SURFACE_UNDER_NOSE] = {62, 98, 100},
-	[SURFACE_CUSHION] = {119, 155, 143}, [SURFACE_RAIL] = {118, 54, 52},  [SURFACE_CASTING] = {40, 35, 41},
-	[SURFACE_HOLE] = {7, 5, 9},	   [SURFACE_WHITE] = {252, 232, 240}, [SURFACE_BLACK] = {58, 28, 42},
+	[SURFACE_FLOOR] = {16, 13, 17},	     [SURFACE_BED] = {131, 154, 146},	[SURFACE_UNDER_NOSE] = {62, 98, 100},
+	[SURFACE_CUSHION] = {119, 155, 143}, [SURFACE_RAIL] = {118, 54, 52},	[SURFACE_CASTING] = {40, 35, 41},
+	[SURFACE_HOLE] = {7, 5, 9},	     [SURFACE_WHITE] = {252, 232, 240}, [SURFACE_BLACK] = {58, 28, 42},
 };
 
 /* ---- places ---- */
@@ -24,10 +24,11 @@ static const float COLOURS[][3] = {
 int table_scene_init(struct table_scene *scene, const struct table *table, const struct marker_layout *markers,
 		     const double eye[3], char *err, size_t err_size)
 {
-	*scene = (struct table_scene){.table = table, .markers = *markers, .rail_height = markers->height,
-				      .eye = {eye[0], eye[1], eye[2]}};
+	*scene = (struct table_scene){
+		.table = table, .markers = *markers, .rail_height = markers->height, .eye = {eye[0], eye[1], eye[2]}};
 	for (int i = 0; i < markers->count; i++) {
-		if (marker_bits(markers->dictionary_count, markers->dictionary_bits, markers->marker[i].id, scene->bits[i]))
+		if (marker_bits(markers->dictionary_count, markers->dictionary_bits, markers->marker[i].id,
+				scene->bits[i]))
 			continue;
 		snprintf(err, err_size, "markers: id %d is not in a dictionary of %d markers of %d bits",
 			 markers->marker[i].id, markers->dictionary_count, markers->dictionary_bits);
@@ -84,7 +85,8 @@ static bool on_diamond(const struct table *table, vec2 p)
 	double out = CUSHION_WIDTH + RAIL_WIDTH / 2 - 0.002;
 	vec2 q = {fabs(p.x), fabs(p.y)};
 	for (int k = 0; k <= 3; k++) {
-		vec2 side = {k * table->length / 8, table->width / 2 + out}, end = {table->length / 2 + out, k * table->width / 4};
+		vec2 side = {k * table->length / 8, table->width / 2 + out},
+		     end = {table->length / 2 + out, k * table->width / 4};
 		if ((k > 0 && vec2_dist(q, side) < DIAMOND) || (k < 2 && vec2_dist(q, end) < DIAMOND))
 			return true;
 	}
@@ -97,7 +99,8 @@ static enum surface on_marker(const struct table_scene *scene, vec2 p)
 	const struct marker_layout *m = &scene->markers;
 	for (int i = 0; i < m->count; i++) {
 		/* from the black square's top left corner, in sides */
-		double u = (p.x - m->marker[i].centre.x) / m->side + 0.5, v = 0.5 - (p.y - m->marker[i].centre.y) / m->side;
+		double u = (p.x - m->marker[i].centre.x) / m->side + 0.5,
+		       v = 0.5 - (p.y - m->marker[i].centre.y) / m->side;
 		if (u < -MARKER_BORDER || v < -MARKER_BORDER || u > 1 + MARKER_BORDER || v > 1 + MARKER_BORDER)
 			continue;
 		if (u < 0 || v < 0 || u >= 1 || v >= 1)
@@ -152,7 +155,8 @@ enum surface table_scene_surface(const struct table_scene *scene, vec2 p)
 
 double table_scene_meet(const struct table_scene *scene, vec2 p, enum surface surface, vec2 *at)
 {
-	bool low = surface == SURFACE_BED || surface == SURFACE_UNDER_NOSE || surface == SURFACE_FLOOR || surface == SURFACE_HOLE;
+	bool low = surface == SURFACE_BED || surface == SURFACE_UNDER_NOSE || surface == SURFACE_FLOOR ||
+		   surface == SURFACE_HOLE;
 	*at = low ? p : raise(scene, p);
 	return low ? 0 : scene->rail_height;
 }
@@ -203,7 +207,8 @@ static double texture(const struct table_scene *scene, vec2 p, enum surface surf
 	case SURFACE_CUSHION:
 		return 1 + 0.02 * grain(at, 0.0025, 0.0025);
 	case SURFACE_RAIL:
-		return 1 + 0.16 * (fabs(at.x) > scene->table->length / 2 ? grain(at, 0.005, 0.3) : grain(at, 0.3, 0.005));
+		return 1 +
+		       0.16 * (fabs(at.x) > scene->table->length / 2 ? grain(at, 0.005, 0.3) : grain(at, 0.3, 0.005));
 	default:
 		return 1;
 	}

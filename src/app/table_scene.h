@@ -7,23 +7,23 @@
 #include "vision/vision.h"
 
 enum surface {
-	SURFACE_FLOOR,		/* around the table */
+	SURFACE_FLOOR, /* around the table */
 	SURFACE_BED,
-	SURFACE_UNDER_NOSE,	/* bed in the shadow below a cushion's nose */
+	SURFACE_UNDER_NOSE, /* bed in the shadow below a cushion's nose */
 	SURFACE_CUSHION,
 	SURFACE_RAIL,
-	SURFACE_CASTING,	/* dark metal around the pockets */
+	SURFACE_CASTING, /* dark metal around the pockets */
 	SURFACE_HOLE,
-	SURFACE_WHITE,		/* of markers and diamonds */
-	SURFACE_BLACK		/* of markers */
+	SURFACE_WHITE, /* of markers and diamonds */
+	SURFACE_BLACK  /* of markers */
 };
 
 struct table_scene {
-	const struct table *table;	/* borrowed */
+	const struct table *table; /* borrowed */
 	struct marker_layout markers;
 	uint8_t bits[MARKER_MAX][MARKER_BITS_MAX * MARKER_BITS_MAX];
-	double rail_height;		/* m: cushions, rails and markers are one plane */
-	double eye[3];			/* m, the camera's centre */
+	double rail_height; /* m: cushions, rails and markers are one plane */
+	double eye[3];	    /* m, the camera's centre */
 };
 
 /* 0, or -EINVAL with the reason when a marker is not in its dictionary. */

@@ -11,8 +11,9 @@ extern "C" {
 
 enum { MARKER_BITS_MAX = 7 };
 
-/* Inner cells of marker id of cv::aruco::generateCustomDictionary(count, bits), row by row from the top left: bits * bits values, 1 white. A
- * black border of one cell lies around them. False when there is no such marker or dictionary. */
+/* Inner cells of marker id of cv::aruco::generateCustomDictionary(count, bits), row by row from the top left: bits *
+ * bits values, 1 white. A black border of one cell lies around them. False when there is no such marker or dictionary.
+ */
 bool marker_bits(int dictionary_count, int dictionary_bits, int id, uint8_t out[MARKER_BITS_MAX * MARKER_BITS_MAX]);
 
 #ifdef __cplusplus
