@@ -6,27 +6,38 @@
 #include <stdio.h>
 #include <stdlib.h>
 
-#include "search/planner.h"
+#include "search/crew.h"
+
+/* Of a live budget, for those who rank by success. */
+static const double RANKING_SHARE = 0.2;
 
 struct planner_def planner_def_default(void)
 {
-	struct planner_def def = {.profile = cost_profile_thesis(), .workers = 1, .memory = 32u << 20};
+	struct planner_def def = {
+		.profile = cost_profile_thesis(),
+		.workers = 1,
+		.sync_period = 0.1,
+		.sync_window = 0.004,
+		.memory = 32u << 20,
+	};
 	bool known = model_from_name("thesis", &def.model);
 	assert(known);
 	(void)known;
 	return def;
 }
 
-/* Bytes that are not for open nodes. */
-static size_t fixed_memory(int workers)
+/* Bytes that are not for open nodes; the same for any number of workers, so that the room for nodes is. */
+static size_t fixed_memory(void)
 {
-	return sizeof(struct planner) + (size_t)workers * sizeof(struct workspace) + BATCH * sizeof(struct slot) +
+	return sizeof(struct planner) + (PLAN_WORKERS_MAX + 1) * sizeof(struct workspace) + BATCH * sizeof(struct slot) +
 	       STATES_MAX * sizeof(struct state) + PLAN_SHOTS_MAX * sizeof(struct solutions) + PLAN_MAX * sizeof(struct plan);
 }
 
 static int take_memory(struct planner *planner)
 {
-	int workers = planner->def.workers;
+	bool batches = planner->def.scheme == SCHEME_BATCH;
+	int workers = planner->def.workers + !batches;	/* the manager works along where a search needs batches */
+	size_t bytes = planner->def.memory - fixed_memory();
 	planner->work = calloc((size_t)workers, sizeof *planner->work);
 	planner->slot = calloc(BATCH, sizeof *planner->slot);
 	planner->state = calloc(STATES_MAX, sizeof *planner->state);
@@ -34,14 +45,26 @@ static int take_memory(struct planner *planner)
 	planner->plan = calloc(PLAN_MAX, sizeof *planner->plan);
 	if (!planner->work || !planner->slot || !planner->state || !planner->solutions || !planner->plan)
 		return -ENOMEM;
-	int rc = frontier_init(&planner->frontier, planner->def.memory - fixed_memory(workers));
-	return rc ? rc : pool_create(&planner->pool, workers);
+	int rc = frontier_init(&planner->frontier, bytes);
+	if (rc == 0)
+		rc = pool_create(&planner->pool, workers);
+	if (rc == 0 && !batches)
+		rc = crew_create(&planner->crew, planner, bytes);
+	return rc;
+}
+
+static bool def_is_valid(const struct planner_def *def)
+{
+	bool windows = def->sync_window > 0 && (def->workers + 1) * def->sync_window <= def->sync_period;
+	return def->table && def->workers >= 1 && def->workers <= PLAN_WORKERS_MAX && def->memory > fixed_memory() &&
+	       def->scheme >= SCHEME_BATCH && def->scheme < SCHEME_COUNT &&
+	       (def->scheme != SCHEME_WINDOWS || (windows && def->now));
 }
 
 int planner_create(struct planner **out, const struct planner_def *def)
 {
 	*out = NULL;
-	if (!def->table || def->workers < 1 || def->workers > PLAN_WORKERS_MAX || def->memory <= fixed_memory(def->workers))
+	if (!def_is_valid(def))
 		return -EINVAL;
 	struct planner *planner = calloc(1, sizeof *planner);
 	if (!planner)
@@ -62,6 +85,7 @@ void planner_destroy(struct planner *planner)
 	if (!planner)
 		return;
 	pool_destroy(planner->pool);
+	crew_destroy(planner->crew);
 	frontier_finish(&planner->frontier);
 	free(planner->work);
 	free(planner->slot);
@@ -90,12 +114,12 @@ static void export_plan(const struct planner *planner, const struct solution *so
 	}
 }
 
-static void export_result(struct planner *planner, struct plan_result *result)
+void planner_export(struct planner *planner, int limit, struct plan_result *result)
 {
 	struct solutions *list = best_solutions(planner);
 	*result = (struct plan_result){
 		.plan = planner->plan,
-		.plan_count = list ? list->count : 0,
+		.found = list ? list->count : 0,
 		.nodes = planner->nodes,
 		.sims = planner->sims,
 		.tried = planner->tried,
@@ -103,24 +127,40 @@ static void export_result(struct planner *planner, struct plan_result *result)
 		.refined = planner->refined,
 		.exhausted = !planner->cut && !planner->overflow,
 	};
+	result->plan_count = limit > 0 && limit < result->found ? limit : result->found;
 	for (int i = 0; i < result->plan_count; i++)
 		export_plan(planner, solutions_at(list, i), &planner->plan[i]);
 	result->status = result->plan_count > 0 ? PLAN_OK : PLAN_NONE;
 }
 
-/* Tolerances of the last shots and, once a position each, of those that led there. */
-static void find_tolerances(struct planner *planner)
+static void run_batches(struct planner *planner, plan_progress_fn *progress, void *context, struct plan_result *result)
 {
-	struct solutions *list = best_solutions(planner);
-	for (int i = 0; list && i < list->count && i < planner->request->tolerances; i++) {
-		struct solution *s = solutions_at(list, i);
-		tolerance_find(planner, &planner->state[s->state], &s->last, planner->work);
-		for (int32_t at = s->state; planner->state[at].parent != NO_STATE; at = planner->state[at].parent) {
-			struct state *state = &planner->state[at];
-			if (isnan(state->record.success))
-				tolerance_find(planner, &planner->state[state->parent], &state->record, planner->work);
+	bool improved;
+	show_begin(planner);
+	while (search_step(planner, &improved)) {
+		show_step(planner);
+		if (improved && progress) {
+			planner_export(planner, planner->def.progress_plans, result);
+			progress(context, result);
 		}
 	}
+	show_end(planner);
+}
+
+static void search(struct planner *planner, plan_progress_fn *progress, void *context, struct plan_result *result)
+{
+	double budget = planner->request->budget.seconds, begin = budget > 0 ? planner->def.now(planner->def.now_context) : 0;
+	double share = planner->def.profile.rank_by_success ? 1 - RANKING_SHARE : 1;
+	planner->deadline = budget > 0 ? begin + share * budget : INFINITY;
+	search_begin(planner);
+	if (planner->crew && planner->request->budget.nodes == 0)
+		crew_run(planner->crew, progress, context, result);
+	else
+		run_batches(planner, progress, context, result);
+	if (!best_solutions(planner))
+		safety_find(planner);
+	planner->deadline = budget > 0 ? begin + budget : INFINITY;
+	rank_solutions(planner);
 }
 
 int planner_run(struct planner *planner, const struct plan_request *request, plan_progress_fn *progress, void *context,
@@ -135,18 +175,8 @@ int planner_run(struct planner *planner, const struct plan_request *request, pla
 		return rc;
 	atomic_store_explicit(&planner->cancel, false, memory_order_relaxed);
 	planner->request = request;
-	planner->deadline = request->budget.seconds > 0 ? planner->def.now(planner->def.now_context) + request->budget.seconds : INFINITY;
-	search_begin(planner);
-	bool improved;
-	while (search_step(planner, &improved))
-		if (improved && progress) {
-			export_result(planner, result);
-			progress(context, result);
-		}
-	if (!best_solutions(planner))
-		safety_find(planner);
-	find_tolerances(planner);
-	export_result(planner, result);
+	search(planner, progress, context, result);
+	planner_export(planner, 0, result);
 	planner->request = NULL;
 	if (!atomic_load_explicit(&planner->cancel, memory_order_relaxed))
 		return 0;

@@ -10,6 +10,7 @@
 
 enum {
 	BATCH = 16,		/* nodes worked on at a time: never depends on the number of workers, so that results do not */
+	RANKED_MAX = 64,	/* plans whose success is found when a profile ranks by it */
 	SPEEDS_MAX = 32,		/* start speeds of one candidate */
 	CHILDREN_MAX = 2048,	/* of one expansion */
 	STATES_MAX = 2048,
@@ -62,6 +63,16 @@ struct solutions {
 	int count, limit;
 };
 
+/* What planner_figures() shows of batches. Written by the thread that runs the search. */
+struct shown {
+	_Atomic uint64_t nodes, sims;
+	_Atomic uint32_t open;
+	atomic_int busy, depth;
+	uint64_t nodes_before, sims_before;
+};
+
+struct crew;
+
 struct planner {
 	struct planner_def def;
 	struct mirrors mirrors;
@@ -72,6 +83,8 @@ struct planner {
 	struct solutions *solutions;	/* by number of shots: PLAN_SHOTS_MAX */
 	struct plan *plan;		/* PLAN_MAX, what results point to */
 	struct frontier frontier;
+	struct crew *crew;		/* NULL for SCHEME_BATCH */
+	struct shown shown;
 	atomic_bool cancel;
 
 	/* of the running search */
@@ -81,6 +94,14 @@ struct planner {
 	double deadline;
 	bool overflow, cut;		/* something was dropped; ended before its time */
 };
+
+/* The best so far, with at most limit plans filled in; 0: all. */
+void planner_export(struct planner *planner, int limit, struct plan_result *result);
+
+/* Keeps the figures up to date: before the first batch, after each, after the last. */
+void show_begin(struct planner *planner);
+void show_step(struct planner *planner);
+void show_end(struct planner *planner);
 
 /* Sets up the first positions and their roots. */
 void search_begin(struct planner *planner);
@@ -119,6 +140,9 @@ struct solutions *best_solutions(struct planner *planner);
 
 /* Tolerance and success of one record played from state. */
 void tolerance_find(const struct planner *planner, const struct state *state, struct record *record, struct workspace *work);
+
+/* Finds tolerance and success of as many of the best plans as the request or the profile asks for, and ranks by success if the profile does. */
+void rank_solutions(struct planner *planner);
 
 /* With nothing to pot: the simplest legal contact becomes the one solution. False when even that is not to be had. */
 bool safety_find(struct planner *planner);
