@@ -67,11 +67,12 @@ static struct vec3 from_array(const double v[3])
 /* 0 in the light, 1 where the sphere hides the whole lamp. */
 static double hidden(const struct sphere *sphere, struct vec3 p, struct vec3 lamp, double soft)
 {
-	struct vec3 way = unit(sub(lamp, p)), to = sub(sphere->centre, p);
-	double along = dot(to, way), off = sqrt(fmax(0, dot(to, to) - along * along)) / sphere->radius;
-	if (along <= 0 || off >= 1 + soft)
+	struct vec3 way = sub(lamp, p), to = sub(sphere->centre, p);
+	double along = dot(to, way), off2 = dot(to, to) - along * along / dot(way, way),
+	       reach = (1 + soft) * sphere->radius;
+	if (along <= 0 || off2 >= reach * reach)
 		return 0;
-	double t = fmin(1, (1 + soft - off) / (2 * soft));
+	double t = fmin(1, (1 + soft - sqrt(fmax(0, off2)) / sphere->radius) / (2 * soft));
 	return t * t * (3 - 2 * t);
 }
 
@@ -158,17 +159,19 @@ struct pass {
 	struct vec3 at, normal; /* where it enters; beside the ball the nearest point of its rim */
 };
 
-static struct pass pass_of(const struct sphere *sphere, struct vec3 eye, vec2 cloth)
+/* False when the ray passes farther than reach (radii) from the centre. to: from the eye to the centre. */
+static bool pass_ball(const struct sphere *sphere, struct vec3 to, struct vec3 way, double reach, struct pass *pass)
 {
-	struct vec3 way = unit(sub((struct vec3){cloth.x, cloth.y, 0}, eye)), to = sub(sphere->centre, eye);
-	double along = dot(to, way);
-	struct vec3 nearest = sub(madd(eye, along, way), sphere->centre);
-	double off2 = dot(nearest, nearest), r2 = sphere->radius * sphere->radius;
-	struct pass pass = {.distance = sqrt(off2 / r2)};
-	struct vec3 out = off2 < r2 ? madd(nearest, -sqrt(r2 - off2), way) : nearest;
-	pass.normal = unit(out);
-	pass.at = madd(sphere->centre, sphere->radius, pass.normal);
-	return pass;
+	double r2 = sphere->radius * sphere->radius, along = dot(to, way) / dot(way, way);
+	struct vec3 nearest = sub((struct vec3){along * way.x, along * way.y, along * way.z}, to);
+	double off2 = dot(nearest, nearest);
+	if (along <= 0 || off2 > reach * reach * r2)
+		return false;
+	double back = off2 < r2 ? sqrt((r2 - off2) / dot(way, way)) : 0;
+	pass->distance = sqrt(off2 / r2);
+	pass->normal = unit(madd(nearest, -back, way));
+	pass->at = madd(sphere->centre, sphere->radius, pass->normal);
+	return true;
 }
 
 static vec2 cloth_of(const struct table_camera *camera, int x, int y)
@@ -177,16 +180,24 @@ static vec2 cloth_of(const struct table_camera *camera, int x, int y)
 	return (vec2){p[0], p[1]};
 }
 
+/* Does the ray meet the sphere? to: from the eye to its centre. */
+static bool meets(const struct sphere *sphere, struct vec3 to, struct vec3 way)
+{
+	double along = dot(to, way);
+	return along > 0 && along * along > (dot(to, to) - sphere->radius * sphere->radius) * dot(way, way);
+}
+
 /* Share of the pixel that the ball covers. */
 static float coverage(const struct table_camera *camera, const struct sphere *sphere, struct vec3 eye, int x, int y)
 {
-	int x0 = x > 0 ? x - 1 : x, y0 = y > 0 ? y - 1 : y;
+	int x0 = x > 0 ? x - 1 : x, y0 = y > 0 ? y - 1 : y, hits = 0;
 	vec2 at = cloth_of(camera, x, y), right = vec2_sub(cloth_of(camera, x0 + 1, y), cloth_of(camera, x0, y));
 	vec2 down = vec2_sub(cloth_of(camera, x, y0 + 1), cloth_of(camera, x, y0));
-	int hits = 0;
+	struct vec3 to = sub(sphere->centre, eye);
 	for (int k = 0; k < RIM_SAMPLES * RIM_SAMPLES; k++) {
 		double u = (k % RIM_SAMPLES + 0.5) / RIM_SAMPLES - 0.5, v = (k / RIM_SAMPLES + 0.5) / RIM_SAMPLES - 0.5;
-		hits += pass_of(sphere, eye, vec2_madd(vec2_madd(at, u, right), v, down)).distance < 1;
+		vec2 cloth = vec2_madd(vec2_madd(at, u, right), v, down);
+		hits += meets(sphere, to, (struct vec3){cloth.x - eye.x, cloth.y - eye.y, -eye.z});
 	}
 	return (float)hits / (RIM_SAMPLES * RIM_SAMPLES);
 }
@@ -208,8 +219,10 @@ static void draw_ball(struct table_camera *camera, struct sphere *sphere, struct
 	double rim = 0.95 * sqrt(dot(to, to)) / fmin(camera->camera.in.fx, camera->camera.in.fy) / sphere->radius;
 	for (int y = box.y0; y < box.y1; y++)
 		for (int x = box.x0; x < box.x1; x++) {
-			struct pass pass = pass_of(sphere, eye, cloth_of(camera, x, y));
-			if (pass.distance > 1 + rim)
+			vec2 cloth = cloth_of(camera, x, y);
+			struct pass pass;
+			if (!pass_ball(sphere, to, (struct vec3){cloth.x - eye.x, cloth.y - eye.y, -eye.z}, 1 + rim,
+				       &pass))
 				continue;
 			float share = pass.distance < 1 - rim ? 1 : coverage(camera, sphere, eye, x, y), rgb[3];
 			if (share <= 0)
