@@ -19,7 +19,8 @@ JOBS ?= $(shell nproc)
 
 PHYSICS := ball collide contact contact_ball_real contact_mathavan contact_stronge detect event inverse model motion queue \
 	roots sim table trace
-SEARCH := candidate cost frontier geometry plan play pool rank refine request respot rules safety shot solutions step tolerance
+SEARCH := candidate cost crew figures frontier geometry plan play pool rank refine request respot \
+	rules safety scheme share_queue share_steal share_windows shot solutions step tolerance
 VISION := calibration camera colour detect fit linear outline pose reason scan seeds stabilise track vision
 VISION_CV := capture_cv image_io_cv markers_cv marker_image_cv
 # app: what the programs share

@@ -5,6 +5,7 @@
 
 #include "physics/sim.h"
 #include "search/rules.h"
+#include "search/scheme.h"
 
 enum { PLAN_MAX = 1024, PLAN_SHOTS_MAX = 4, PLAN_CHAIN_MAX = 4, PLAN_RAILS_MAX = 3, PLAN_POTTED_MAX = 8, PLAN_WORKERS_MAX = 16 };
 
@@ -85,6 +86,7 @@ enum plan_status { PLAN_OK, PLAN_NONE, PLAN_CANCELLED };
 struct plan_result {
 	enum plan_status status;
 	int plan_count;		/* best first */
+	int found;		/* plan_count, but for what def.progress_plans left out */
 	struct plan *plan;	/* owned by the planner, valid until its next run */
 	uint64_t nodes, sims;
 	uint64_t tried, landed, refined;	/* shots simulated at the mirror's aim; those that did as meant; those that did after their aim was refined */
@@ -96,8 +98,11 @@ struct planner_def {
 	const struct table *table;	/* borrowed */
 	struct model model;
 	struct cost_profile profile;
-	int workers;			/* 1..PLAN_WORKERS_MAX; 1 = the caller's thread */
-	size_t memory;			/* bytes for nodes, default 32 MB */
+	int workers;			/* 1..PLAN_WORKERS_MAX; SCHEME_BATCH: the caller's thread is one of them, else it manages */
+	enum plan_scheme scheme;	/* default SCHEME_BATCH */
+	double sync_period, sync_window;	/* s, k and n of thesis 4.7, for SCHEME_WINDOWS; needs (workers + 1) n <= k and def.now */
+	int progress_plans;		/* at most so many plans are filled in for plan_progress_fn; 0: all */
+	size_t memory;			/* bytes for nodes, default 32 MB; schemes with queues of their own take as much again */
 	double (*now)(void *context);	/* s, monotonic, for budget.seconds; NULL: time budgets are refused */
 	void *now_context;
 };
@@ -115,9 +120,13 @@ int plan_request_check(const struct table *table, const struct plan_request *req
 typedef void plan_progress_fn(void *context, const struct plan_result *result);
 
 /* 0, or -EINVAL (request not acceptable, reason in err), -ECANCELED (best so far is in result). Same request, same result,
- * bit for bit, at any number of workers unless budget.seconds cut it short. Allocates nothing. */
+ * bit for bit, at any number of workers unless budget.seconds cut it short; but nodes and sims without a node budget only in
+ * SCHEME_BATCH. Allocates nothing. */
 int planner_run(struct planner *planner, const struct plan_request *request, plan_progress_fn *progress, void *context,
 		struct plan_result *result, char *err, size_t err_size);
+
+/* From any thread. */
+void planner_figures(const struct planner *planner, struct plan_figures *out);
 
 /* From any thread: the running search ends soon with -ECANCELED. */
 void planner_cancel(struct planner *planner);

@@ -63,7 +63,7 @@ static void *thread_main(void *arg)
 int pool_create(struct pool **out, int workers)
 {
 	*out = NULL;
-	if (workers < 1 || workers > PLAN_WORKERS_MAX)
+	if (workers < 1 || workers > PLAN_WORKERS_MAX + 1)
 		return -EINVAL;
 	struct pool *pool = calloc(1, sizeof *pool);
 	if (!pool)
@@ -101,14 +101,9 @@ void pool_destroy(struct pool *pool)
 	free(pool);
 }
 
-void pool_for(struct pool *pool, int count, pool_fn *fn, void *context)
+void pool_begin(struct pool *pool, int count, pool_fn *fn, void *context)
 {
-	assert(count >= 0);
-	if (pool->thread_count == 0 || count <= 1) {
-		for (int i = 0; i < count; i++)
-			fn(context, i, 0);
-		return;
-	}
+	assert(pool->thread_count > 0);
 	pthread_mutex_lock(&pool->lock);
 	pool->fn = fn;
 	pool->context = context;
@@ -118,9 +113,25 @@ void pool_for(struct pool *pool, int count, pool_fn *fn, void *context)
 	pool->round++;
 	pthread_cond_broadcast(&pool->begin);
 	pthread_mutex_unlock(&pool->lock);
-	work(pool, 0);
+}
+
+void pool_end(struct pool *pool)
+{
 	pthread_mutex_lock(&pool->lock);
 	while (pool->running > 0)
 		pthread_cond_wait(&pool->end, &pool->lock);
 	pthread_mutex_unlock(&pool->lock);
+}
+
+void pool_for(struct pool *pool, int count, pool_fn *fn, void *context)
+{
+	assert(count >= 0);
+	if (pool->thread_count == 0 || count <= 1) {
+		for (int i = 0; i < count; i++)
+			fn(context, i, 0);
+		return;
+	}
+	pool_begin(pool, count, fn, context);
+	work(pool, 0);
+	pool_end(pool);
 }
