@@ -65,6 +65,9 @@ static bool in_mouth(const struct table *table, const struct pocket *pocket, vec
 	vec2 from = vec2_sub(p, pocket->centre);
 	if (vec2_dot(from, pocket->normal) <= 0 || vec2_norm(from) > MOUTH_REACH)
 		return false;
+	/* Behind short jaws the middle comes in sight again: that is rail. */
+	if (outside(table, p) > CUSHION_WIDTH)
+		return false;
 	for (int i = 0; i < table->jaw_count; i++)
 		if (vec2_dist(p, table->jaw[i].centre) < table->jaw[i].radius)
 			return false;
