@@ -21,6 +21,24 @@ static const float COLOURS[][3] = {
 
 /* ---- places ---- */
 
+/* How far p lies outside the rectangle of the noses; negative inside. */
+static double outside(const struct table *table, vec2 p)
+{
+	return fmax(fabs(p.x) - table->length / 2, fabs(p.y) - table->width / 2);
+}
+
+static double mouth_depth(const struct table *table, const struct pocket *pocket)
+{
+	double depth = 0;
+	for (int i = 0; i < table->cushion_count; i++) {
+		const struct cushion *c = &table->cushion[i];
+		if (!c->main_rail &&
+		    fmin(vec2_dist(c->a, pocket->centre), vec2_dist(c->b, pocket->centre)) < MOUTH_REACH)
+			depth = fmax(depth, fmax(outside(table, c->a), outside(table, c->b)));
+	}
+	return depth;
+}
+
 int table_scene_init(struct table_scene *scene, const struct table *table, const struct marker_layout *markers,
 		     const double eye[3], char *err, size_t err_size)
 {
@@ -34,6 +52,8 @@ int table_scene_init(struct table_scene *scene, const struct table *table, const
 			 markers->marker[i].id, markers->dictionary_count, markers->dictionary_bits);
 		return -EINVAL;
 	}
+	for (int i = 0; i < table->pocket_count; i++)
+		scene->mouth_depth[i] = mouth_depth(table, &table->pocket[i]);
 	return 0;
 }
 
@@ -42,12 +62,6 @@ static vec2 raise(const struct table_scene *scene, vec2 p)
 {
 	double k = (scene->eye[2] - scene->rail_height) / scene->eye[2];
 	return (vec2){scene->eye[0] + k * (p.x - scene->eye[0]), scene->eye[1] + k * (p.y - scene->eye[1])};
-}
-
-/* How far p lies outside the rectangle of the noses; negative inside. */
-static double outside(const struct table *table, vec2 p)
-{
-	return fmax(fabs(p.x) - table->length / 2, fabs(p.y) - table->width / 2);
 }
 
 /* Do the segments a..b and c..d cross? */
@@ -60,10 +74,13 @@ static bool segments_cross(vec2 a, vec2 b, vec2 c, vec2 d)
 }
 
 /* Cloth between the jaws: from there the pocket's middle is in sight past all cushions. */
-static bool in_mouth(const struct table *table, const struct pocket *pocket, vec2 p)
+static bool in_mouth(const struct table_scene *scene, int index, vec2 p)
 {
+	const struct table *table = scene->table;
+	const struct pocket *pocket = &table->pocket[index];
 	vec2 from = vec2_sub(p, pocket->centre);
-	if (vec2_dot(from, pocket->normal) <= 0 || vec2_norm(from) > MOUTH_REACH)
+	if (vec2_dot(from, pocket->normal) <= 0 || vec2_norm(from) > MOUTH_REACH ||
+	    outside(table, p) > scene->mouth_depth[index])
 		return false;
 	/* Behind short jaws the middle comes in sight again: that is rail. */
 	if (outside(table, p) > CUSHION_WIDTH)
@@ -126,7 +143,7 @@ static enum surface at_pocket(const struct table_scene *scene, vec2 bed, vec2 to
 		double hole = pocket->radius + HOLE_MORE;
 		if (vec2_dist(bed, pocket->centre) < hole || (over && vec2_dist(top, pocket->centre) < hole))
 			return SURFACE_HOLE;
-		if (over && in_mouth(table, pocket, top))
+		if (over && in_mouth(scene, i, top))
 			return SURFACE_UNDER_NOSE;
 		if (over && vec2_dist(top, pocket->centre) < pocket->radius + CASTING_MORE)
 			return SURFACE_CASTING;

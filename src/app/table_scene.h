@@ -22,8 +22,9 @@ struct table_scene {
 	const struct table *table; /* borrowed */
 	struct marker_layout markers;
 	uint8_t bits[MARKER_MAX][MARKER_BITS_MAX * MARKER_BITS_MAX];
-	double rail_height; /* m: cushions, rails and markers are one plane */
-	double eye[3];	    /* m, the camera's centre */
+	double rail_height;		/* m: cushions, rails and markers are one plane */
+	double eye[3];			/* m, the camera's centre */
+	double mouth_depth[POCKET_MAX]; /* m, how far a pocket's jaws reach out from the noses */
 };
 
 /* 0, or -EINVAL with the reason when a marker is not in its dictionary. */
