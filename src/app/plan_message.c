@@ -179,7 +179,8 @@ static bool add_ball(billiard_plan_t *out, const struct trace *trace, int ball)
 	for (int i = 0; i < trace->count; i++) {
 		const struct trace_entry *e = &trace->entry[i];
 		bool second = e->event.kind == EVENT_BALL_BALL && e->event.other == ball;
-		if (e->event.ball != ball && !second)
+		/* The states at the start are those after the strike. */
+		if ((e->event.ball != ball && !second) || e->event.kind == EVENT_STRIKE)
 			continue;
 		if (!add_keyframe(out, trace->table, &state, ball, begin, e->event.time, event))
 			return false;
