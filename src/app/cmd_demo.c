@@ -98,6 +98,23 @@ static void describe_proposal(const struct demo *d, char *out, size_t size)
 		add_text(out, size, " nothing");
 }
 
+/* How far the worst ball is seen from where it really lies, m; INFINITY when one is missed or invented. */
+static double worst_error(const struct demo *d)
+{
+	double worst = d->seen.ball_count == d->truth.ball_count ? 0 : INFINITY;
+	for (int i = 0; i < d->truth.ball_count; i++) {
+		const billiard_ball_t *t = &d->truth.balls[i];
+		double nearest = INFINITY;
+		for (int k = 0; k < d->seen.ball_count; k++) {
+			const billiard_ball_t *s = &d->seen.balls[k];
+			if (s->colour == t->colour)
+				nearest = fmin(nearest, vec2_dist((vec2){s->x, s->y}, (vec2){t->x, t->y}));
+		}
+		worst = fmax(worst, nearest);
+	}
+	return worst;
+}
+
 static void print_proposal(struct demo *d)
 {
 	char text[TEXT_SIZE];
@@ -111,6 +128,10 @@ static void print_proposal(struct demo *d)
 	printf("%d balls seen", d->seen.ball_count);
 	if (cue >= 0)
 		printf(", cue ball at (%.0f, %.0f) mm", 1e3 * d->seen.balls[cue].x, 1e3 * d->seen.balls[cue].y);
+	if (d->has_truth && isfinite(worst_error(d)))
+		printf(", all within %.2f mm of the truth", 1e3 * worst_error(d));
+	else if (d->has_truth)
+		printf(", %d are there", d->truth.ball_count);
 	describe_proposal(d, text, sizeof text);
 	printf("; proposed %s; %.0f ms from rest to proposal", text, 1e-3 * (double)(d->shown_utime - d->rest_utime));
 	if (d->options.input)
