@@ -1,0 +1,357 @@
+/* The planner: proposals that do what they say, the same at any number of workers, in fixed memory, at any moment. */
+#include "harness.h"
+#include "search_scenes.h"
+#include "scenes.h"
+
+#include <errno.h>
+#include <malloc.h>
+#include <pthread.h>
+#include <string.h>
+
+enum { TRACE_MAX = 4096 };
+
+static struct trace_entry entry[TRACE_MAX];
+
+static const char *const models[] = {"thesis", "simple", "simple-elastic", "real"};
+
+/* Each shot again from its own start, and each next start from the rules. */
+static void check_plan(const struct table *table, const struct model *model, const struct plan *plan, int count)
+{
+	for (int s = 0; s < plan->shot_count; s++) {
+		const struct plan_shot *shot = &plan->shot[s];
+		struct trace trace;
+		trace_init(&trace, entry, TRACE_MAX);
+		ck_assert(plan_shot_replay(table, model, shot, count, &trace));
+		if (shot->target < 0)
+			continue;
+		bool falls = false;
+		for (int i = 0; i < shot->potted_count; i++)
+			falls |= shot->potted[i].ball == shot->target && shot->potted[i].pocket == shot->pocket;
+		ck_assert(falls);
+		ck_assert_int_eq(shot->foul, 0);
+		ck_assert_int_gt(shot->points, 0);
+		ck_assert_int_eq(shot->chain[shot->chain_count], -1);
+	}
+}
+
+/* Random positions of 2 to 22 balls on both tables in all models: what is proposed comes true. */
+static void check_random(int first, int positions, struct random *random)
+{
+	struct table table[2] = {scene_thesis_table(), scene_snooker_table()};
+	int shots = 0;
+	for (int n = first; n < first + positions; n++) {
+		struct ball ball[BALL_MAX];
+		struct model model;
+		const struct table *t = &table[n & 1];
+		const char *name = models[n / 2 % 4];
+		int count = 2 + n % 21;
+		scene_random(random, t, 0.005, ball, count);
+		struct plan_request request = scene_request(ball, count);
+		request.target = n % 3 == 0 ? TARGET_RULES : TARGET_ANY;
+		request.rails = n % 4;
+		request.balls = 2;
+		request.depth = n % 5 == 0 ? 2 : 1;
+		request.budget.nodes = 1500;
+		request.plans = 20;
+		ck_assert(model_from_name(name, &model));
+		struct planner *planner = scene_planner(t, name, NULL, 1);
+		struct plan_result result = scene_run(planner, &request);
+		ck_assert_int_gt(result.plan_count, 0);
+		for (int i = 0; i < result.plan_count; i++) {
+			check_plan(t, &model, &result.plan[i], count);
+			shots += result.plan[i].shot_count;
+		}
+		planner_destroy(planner);
+	}
+	ck_assert_int_gt(shots, positions);
+}
+
+START_TEST(proposals_come_true)
+{
+	struct random random = random_begin("proposals_come_true");
+	random.state += (uint64_t)_i;
+	check_random(125 * _i, 125, &random);
+}
+END_TEST
+
+START_TEST(costs_are_in_order)
+{
+	struct random random = random_begin("costs_are_in_order");
+	struct table table = scene_thesis_table();
+	struct planner *planner = scene_planner(&table, "thesis", NULL, 1);
+	for (int n = 0; n < 20; n++) {
+		struct ball ball[BALL_MAX];
+		scene_random(&random, &table, 0.005, ball, 8);
+		struct plan_request request = scene_request(ball, 8);
+		request.rails = 2;
+		struct plan_result result = scene_run(planner, &request);
+		for (int i = 0; i + 1 < result.plan_count; i++)
+			ck_assert(result.plan[i].cost <= result.plan[i + 1].cost);
+		for (int i = 0; i < result.plan_count; i++) {
+			const struct plan_shot *shot = &result.plan[i].shot[0];
+			ck_assert_double_eq_tol(result.plan[i].cost, shot->cost, 1e-12);
+			ck_assert(shot->cost >= shot->search_cost);
+		}
+		/* fewer wanted: the first of the same list */
+		struct plan first[3];
+		int kept = result.plan_count < 3 ? result.plan_count : 3;
+		memcpy(first, result.plan, (size_t)kept * sizeof first[0]);
+		request.plans = 3;
+		result = scene_run(planner, &request);
+		ck_assert_int_eq(result.plan_count, kept);
+		for (int i = 0; i < kept; i++)
+			ck_assert(result.plan[i].shot[0].hash == first[i].shot[0].hash);
+	}
+	planner_destroy(planner);
+}
+END_TEST
+
+/* The same list, bit for bit, at 1, 2 and 8 workers, exhausted and cut short by nodes, with tolerances. */
+START_TEST(workers_do_not_matter)
+{
+	static const int workers[] = {1, 2, 8};
+	static const uint64_t budgets[] = {0, 100, 777, 3000};
+	struct table table = scene_thesis_table();
+	struct ball ball[BALL_MAX];
+	struct random random = random_begin("workers_do_not_matter");
+	for (int n = 0; n < 4; n++) {
+		scene_random(&random, &table, 0.002, ball, 9);
+		uint64_t want[4] = {0};
+		for (int w = 0; w < 3; w++) {
+			struct planner *planner = scene_planner(&table, n & 1 ? "real" : "thesis", NULL, workers[w]);
+			for (int b = 0; b < 4; b++) {
+				struct plan_request request = scene_request(ball, 9);
+				request.target = TARGET_RULES;
+				request.rails = 1 + n % 2;
+				request.depth = 2;
+				request.plans = 50;
+				request.tolerances = 3;
+				request.budget.nodes = budgets[b];
+				struct plan_result result = scene_run(planner, &request);
+				uint64_t hash = scene_hash(&result, 9);
+				if (w == 0)
+					want[b] = hash;
+				ck_assert(hash == want[b]);
+				if (budgets[b] > 0)
+					ck_assert(result.nodes + result.sims <= budgets[b] + 1000);
+				else
+					ck_assert(result.exhausted);
+			}
+			planner_destroy(planner);
+		}
+	}
+}
+END_TEST
+
+/* More nodes never make the best plan worse, and the same planner gives the same again. */
+START_TEST(anytime)
+{
+	struct table table = scene_thesis_table();
+	struct ball ball[BALL_MAX];
+	scene_after_break(&table, 2, ball);
+	struct plan_request request = scene_request(ball, BALL_MAX);
+	request.target = TARGET_ANY;
+	request.rails = 1;
+	struct planner *planner = scene_planner(&table, "thesis", NULL, 1);
+	double best = INFINITY;
+	for (uint64_t nodes = 20; nodes <= 20000; nodes *= 3) {
+		request.budget.nodes = nodes;
+		struct plan_result result = scene_run(planner, &request);
+		uint64_t hash = scene_hash(&result, BALL_MAX);
+		ck_assert_int_gt(result.plan_count, 0);
+		if (result.plan[0].shot[0].target >= 0) {
+			ck_assert(result.plan[0].cost <= best);
+			best = result.plan[0].cost;
+		}
+		result = scene_run(planner, &request);
+		ck_assert(scene_hash(&result, BALL_MAX) == hash);
+	}
+	ck_assert(best < INFINITY);
+	planner_destroy(planner);
+}
+END_TEST
+
+struct watch {
+	int calls;
+	double last;
+};
+
+static void on_progress(void *context, const struct plan_result *result)
+{
+	struct watch *watch = context;
+	ck_assert_int_gt(result->plan_count, 0);
+	watch->calls++;
+	watch->last = result->plan[0].cost;
+}
+
+START_TEST(progress_tells_improvements)
+{
+	struct table table = scene_thesis_table();
+	struct ball ball[BALL_MAX];
+	struct random random = random_begin("progress_tells_improvements");
+	scene_random(&random, &table, 0.01, ball, 8);
+	struct plan_request request = scene_request(ball, 8);
+	request.depth = 2;
+	struct planner *planner = scene_planner(&table, "thesis", NULL, 1);
+	struct plan_result result;
+	struct watch watch = {0, 0};
+	char err[100];
+	ck_assert_int_eq(planner_run(planner, &request, on_progress, &watch, &result, err, sizeof err), 0);
+	ck_assert_int_gt(watch.calls, 0);
+	ck_assert_double_eq(watch.last, result.plan[0].cost);
+	planner_destroy(planner);
+}
+END_TEST
+
+static void *cancel_soon(void *planner)
+{
+	struct timespec wait = {0, 20 * 1000 * 1000};
+	for (int i = 0; i < 20; i++) {	/* the first may come before the search begins */
+		nanosleep(&wait, NULL);
+		planner_cancel(planner);
+	}
+	return NULL;
+}
+
+START_TEST(cancelled_from_another_thread)
+{
+	struct table table = scene_thesis_table();
+	struct ball ball[BALL_MAX];
+	scene_after_break(&table, 3, ball);
+	struct plan_request request = scene_request(ball, BALL_MAX);
+	request.target = TARGET_ANY;
+	request.rails = 3;
+	request.depth = 4;
+	request.speeds = 5;
+	struct planner *planner = scene_planner(&table, "real", NULL, _i);
+	struct plan_result result;
+	char err[100];
+	pthread_t thread;
+	ck_assert_int_eq(pthread_create(&thread, NULL, cancel_soon, planner), 0);
+	ck_assert_int_eq(planner_run(planner, &request, NULL, NULL, &result, err, sizeof err), -ECANCELED);
+	pthread_join(thread, NULL);
+	ck_assert_int_eq(result.status, PLAN_CANCELLED);
+	ck_assert(!result.exhausted);
+	/* what is there holds, and the planner goes on */
+	struct model model;
+	model_from_name("real", &model);
+	for (int i = 0; i < result.plan_count && i < 20; i++)
+		check_plan(&table, &model, &result.plan[i], BALL_MAX);
+	request.depth = 1;
+	request.rails = 0;
+	result = scene_run(planner, &request);
+	ck_assert_int_eq(result.status, PLAN_OK);
+	planner_destroy(planner);
+}
+END_TEST
+
+static double clock_steps(void *context)
+{
+	return *(double *)context += 0.001;
+}
+
+START_TEST(budget_in_seconds)
+{
+	struct table table = scene_thesis_table();
+	struct ball ball[BALL_MAX];
+	double time = 0;
+	char err[100];
+	scene_after_break(&table, 1, ball);
+	struct plan_request request = scene_request(ball, BALL_MAX);
+	request.rails = 3;
+	request.budget.seconds = 0.02;
+	struct plan_result result;
+	struct planner *planner = scene_planner(&table, "thesis", NULL, 1);
+	ck_assert_int_eq(planner_run(planner, &request, NULL, NULL, &result, err, sizeof err), -EINVAL);
+	planner_destroy(planner);
+	struct planner_def def = planner_def_default();
+	def.table = &table;
+	def.now = clock_steps;
+	def.now_context = &time;
+	ck_assert_int_eq(planner_create(&planner, &def), 0);
+	ck_assert_int_eq(planner_run(planner, &request, NULL, NULL, &result, err, sizeof err), 0);
+	ck_assert(!result.exhausted);
+	ck_assert_int_gt(result.plan_count, 0);
+	ck_assert(time < 0.2);
+	planner_destroy(planner);
+}
+END_TEST
+
+/* No memory is taken by a search, and a planner stays within what it was given. */
+START_TEST(memory_is_fixed)
+{
+	struct table table = scene_thesis_table();
+	struct ball ball[BALL_MAX];
+	scene_after_break(&table, 3, ball);
+	struct plan_request request = scene_request(ball, BALL_MAX);
+	request.rails = 3;
+	request.depth = 2;
+	request.target = TARGET_ANY;
+	request.budget.nodes = 3000;
+	size_t before = mallinfo2().uordblks + mallinfo2().hblkhd;
+	struct planner *planner = scene_planner(&table, "thesis", NULL, 1);
+	size_t made = mallinfo2().uordblks + mallinfo2().hblkhd;
+	ck_assert_uint_le(made - before, 32u << 20);
+	scene_run(planner, &request);
+	ck_assert_uint_eq(mallinfo2().uordblks + mallinfo2().hblkhd, made);
+	planner_destroy(planner);
+}
+END_TEST
+
+/* With room for few nodes the search still ends with a proposal, and says that it dropped some. */
+START_TEST(little_memory)
+{
+	struct table table = scene_thesis_table();
+	struct ball ball[BALL_MAX];
+	struct planner *planner;
+	struct planner_def def = planner_def_default();
+	def.table = &table;
+	def.memory = 1;
+	ck_assert_int_eq(planner_create(&planner, &def), -EINVAL);
+	ck_assert_ptr_null(planner);
+	while (planner_create(&planner, &def) != 0)	/* the least that is enough, to 1 % */
+		def.memory += def.memory / 100 + 1000;
+	ck_assert_uint_lt(def.memory, 32u << 20);
+	scene_after_break(&table, 3, ball);
+	struct plan_request request = scene_request(ball, BALL_MAX);
+	request.rails = 3;
+	request.target = TARGET_ANY;
+	struct plan_result result = scene_run(planner, &request);
+	ck_assert_int_gt(result.plan_count, 0);
+	planner_destroy(planner);
+}
+END_TEST
+
+START_TEST(bad_definitions)
+{
+	struct table table = scene_thesis_table();
+	struct planner *planner;
+	struct planner_def def = planner_def_default();
+	ck_assert_int_eq(planner_create(&planner, &def), -EINVAL);
+	def.table = &table;
+	def.workers = 0;
+	ck_assert_int_eq(planner_create(&planner, &def), -EINVAL);
+	def.workers = PLAN_WORKERS_MAX + 1;
+	ck_assert_int_eq(planner_create(&planner, &def), -EINVAL);
+	planner_destroy(NULL);
+}
+END_TEST
+
+Suite *test_suite(void)
+{
+	Suite *suite = suite_create("plan");
+	TCase *tc = tcase_create("plan");
+	tcase_set_timeout(tc, 120);
+	tcase_add_loop_test(tc, proposals_come_true, 0, 4);
+	tcase_add_test(tc, costs_are_in_order);
+	tcase_add_test(tc, workers_do_not_matter);
+	tcase_add_test(tc, anytime);
+	tcase_add_test(tc, progress_tells_improvements);
+	tcase_add_loop_test(tc, cancelled_from_another_thread, 1, 3);
+	tcase_add_test(tc, budget_in_seconds);
+	tcase_add_test(tc, memory_is_fixed);
+	tcase_add_test(tc, little_memory);
+	tcase_add_test(tc, bad_definitions);
+	suite_add_tcase(suite, tc);
+	return suite;
+}
