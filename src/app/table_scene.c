@@ -79,11 +79,9 @@ static bool in_mouth(const struct table_scene *scene, int index, vec2 p)
 	const struct table *table = scene->table;
 	const struct pocket *pocket = &table->pocket[index];
 	vec2 from = vec2_sub(p, pocket->centre);
+	/* behind short jaws the middle comes in sight again: that is rail */
 	if (vec2_dot(from, pocket->normal) <= 0 || vec2_norm(from) > MOUTH_REACH ||
 	    outside(table, p) > scene->mouth_depth[index])
-		return false;
-	/* Behind short jaws the middle comes in sight again: that is rail. */
-	if (outside(table, p) > CUSHION_WIDTH)
 		return false;
 	for (int i = 0; i < table->jaw_count; i++)
 		if (vec2_dist(p, table->jaw[i].centre) < table->jaw[i].radius)
