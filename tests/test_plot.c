@@ -107,14 +107,15 @@ START_TEST(overlay_without_calibration)
 	static struct vision_result result;
 	result.ball_count = 1;
 	result.ball[0] = (struct vision_ball){.px = {32, 24}, .radius_px = 8, .colour = COLOUR_RED};
+	struct overlay overlay = {.frame = &image, .table = &table, .result = &result};
 	const char *path = temporary(".png");
-	ck_assert_msg(overlay_write(&image, &table, &result, path, err, sizeof err) == 0, "%s", err);
+	ck_assert_msg(overlay_write(&overlay, path, err, sizeof err) == 0, "%s", err);
 	cairo_surface_t *surface = cairo_image_surface_create_from_png(path);
 	ck_assert_int_eq(cairo_image_surface_get_width(surface), 64);
 	ck_assert_int_eq(cairo_image_surface_get_height(surface), 48);
 	cairo_surface_destroy(surface);
 	unlink(path);
-	ck_assert_int_lt(overlay_write(&image, &table, &result, "/nonexistent/a.png", err, sizeof err), 0);
+	ck_assert_int_lt(overlay_write(&overlay, "/nonexistent/a.png", err, sizeof err), 0);
 }
 END_TEST
 

@@ -129,6 +129,19 @@ static double now_ms(void)
 	return (double)t.tv_sec * 1e3 + (double)t.tv_nsec * 1e-6;
 }
 
+static int write_overlay(const struct detector *detector, const char *path)
+{
+	char err[CMD_ERROR_SIZE];
+	struct vision_refusal refused[OVERLAY_REFUSED_MAX];
+	int count = vision_refusals(detector->vision, refused, OVERLAY_REFUSED_MAX);
+	struct overlay overlay = {.frame = &detector->buffer.image,
+				  .table = &detector->config.table,
+				  .result = &detector->result,
+				  .refused = refused,
+				  .refused_count = count < OVERLAY_REFUSED_MAX ? count : OVERLAY_REFUSED_MAX};
+	return overlay_write(&overlay, path, err, sizeof err) < 0 ? cmd_bad_input("%s", err) : CMD_OK;
+}
+
 static int detect(struct detector *detector, const struct options *options, const char *path)
 {
 	char err[CMD_ERROR_SIZE] = "";
@@ -139,11 +152,10 @@ static int detect(struct detector *detector, const struct options *options, cons
 	double ms = now_ms() - begin;
 	if (code < 0)
 		return cmd_bad_input("%s: %s", path, err);
-	int status = options->json ? print_json(path, &detector->result, ms) : print_table(path, &detector->result, ms);
-	if (status == CMD_OK && options->overlay &&
-	    overlay_write(&detector->buffer.image, &detector->config.table, &detector->result, options->overlay, err, sizeof err) < 0)
-		return cmd_bad_input("%s", err);
-	return status;
+	int status = options->overlay ? write_overlay(detector, options->overlay) : CMD_OK;
+	if (status != CMD_OK)
+		return status;
+	return options->json ? print_json(path, &detector->result, ms) : print_table(path, &detector->result, ms);
 }
 
 int cmd_detect(int argc, char **argv)

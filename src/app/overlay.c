@@ -85,6 +85,25 @@ static void draw_ball(cairo_t *cr, const struct vision_ball *ball)
 	text_at(cr, ball->px.x + ball->radius_px + 2, ball->px.y + 10, label);
 }
 
+/* A cross: whoever wonders why a ball is missing finds the answer beside it. */
+static void draw_refusal(cairo_t *cr, const struct overlay *overlay, const struct vision_refusal *refused)
+{
+	const double arm = 5;
+	vec2 px;
+	if (!camera_project(&overlay->result->camera, refused->pos, overlay->table->ball_radius, &px))
+		return;
+	cairo_set_source_rgb(cr, 1, 0.3, 0.9);
+	cairo_set_line_width(cr, 1.5);
+	cairo_move_to(cr, px.x - arm, px.y - arm);
+	cairo_line_to(cr, px.x + arm, px.y + arm);
+	cairo_move_to(cr, px.x - arm, px.y + arm);
+	cairo_line_to(cr, px.x + arm, px.y - arm);
+	cairo_stroke(cr);
+	char label[96];
+	snprintf(label, sizeof label, "%s (rim %.2f, inside %.2f)", refused->reason, refused->rim_support, refused->cover);
+	text_at(cr, px.x + arm + 2, px.y + arm, label);
+}
+
 static void draw_state(cairo_t *cr, const struct vision_result *result)
 {
 	char line[160];
@@ -99,18 +118,26 @@ static void draw_state(cairo_t *cr, const struct vision_result *result)
 	text_at(cr, 10, 44, line);
 }
 
-int overlay_write(const struct image *frame, const struct table *table, const struct vision_result *result, const char *path, char *err,
-		  size_t err_size)
+static void draw(cairo_t *cr, const struct overlay *overlay)
 {
-	cairo_surface_t *surface = surface_from(frame);
-	cairo_t *cr = cairo_create(surface);
+	const struct vision_result *result = overlay->result;
 	cairo_select_font_face(cr, "DejaVu Sans", CAIRO_FONT_SLANT_NORMAL, CAIRO_FONT_WEIGHT_NORMAL);
 	cairo_set_font_size(cr, 10);
-	if (result->calibration != CALIBRATION_NONE)
-		draw_table(cr, &result->camera, table);
+	if (result->calibration != CALIBRATION_NONE) {
+		draw_table(cr, &result->camera, overlay->table);
+		for (int i = 0; i < overlay->refused_count; i++)
+			draw_refusal(cr, overlay, &overlay->refused[i]);
+	}
 	for (int i = 0; i < result->ball_count; i++)
 		draw_ball(cr, &result->ball[i]);
 	draw_state(cr, result);
+}
+
+int overlay_write(const struct overlay *overlay, const char *path, char *err, size_t err_size)
+{
+	cairo_surface_t *surface = surface_from(overlay->frame);
+	cairo_t *cr = cairo_create(surface);
+	draw(cr, overlay);
 	cairo_status_t status = cairo_status(cr);
 	cairo_destroy(cr);
 	if (status == CAIRO_STATUS_SUCCESS)

@@ -118,6 +118,21 @@ void vision_samples(const struct vision *vision, struct colour_sample *out)
 		out[i] = (struct colour_sample){d->candidate[i].look, d->candidate[i].fit.scale, COLOUR_UNKNOWN};
 }
 
+int vision_refusals(const struct vision *vision, struct vision_refusal *out, int capacity)
+{
+	static const char *const reason[] = {
+		[REFUSED_NOT] = "accepted",  [REFUSED_PLACE] = "no place for a ball", [REFUSED_FIT] = "no rim found",
+		[REFUSED_DOUBLE] = "two in one", [REFUSED_RIM] = "too little rim",	   [REFUSED_INSIDE] = "inside like cloth",
+		[REFUSED_SIZE] = "wrong size",
+	};
+	const struct detector *d = &vision->detector;
+	for (int i = 0; i < d->refused_count && i < capacity; i++) {
+		const struct candidate *c = &d->refused[i];
+		out[i] = (struct vision_refusal){c->fit.pos, c->fit.support, c->cover, reason[c->refusal]};
+	}
+	return d->refused_count;
+}
+
 /* ---- results --------------------------------------------------------------------------------------------------------- */
 
 static void report_calibration(const struct calibration *c, struct vision_result *out)

@@ -74,6 +74,16 @@ int vision_track(struct vision *vision, const struct image *frame, double time, 
  * VISION_BALL_MAX. For learning colours. */
 void vision_samples(const struct vision *vision, struct colour_sample *out);
 
+/* What the last vision_detect() of a calibrated frame looked at and did not take for a ball; for people to look at. */
+struct vision_refusal {
+	vec2 pos;		/* m */
+	double rim_support;	/* share of the rim with an edge, 0..1 */
+	double cover;		/* share of the inside that is not cloth, 0..1 */
+	const char *reason;	/* static */
+};
+/* Fills at most capacity, returns how many there are in all. */
+int vision_refusals(const struct vision *vision, struct vision_refusal *out, int capacity);
+
 /* Forgets tracks and pose. */
 void vision_reset(struct vision *vision);
 
