@@ -32,9 +32,9 @@ PROGRAMS := billiard billiard-vision billiard-planner billiard-infinity billiard
 # tests/test_NAME.c each; tests/NAME.c shared by them
 TESTS := fsm stability plan_message \
 	config position cmd plot draw render player table_camera contact_real contact_recorded shot_file \
-	rules cost geometry frontier pool \
+	rules cost geometry frontier pool scheme candidate plan plan_thesis \
 	roots sim
-TEST_SHARED := harness poly_judge scenes
+TEST_SHARED := harness poly_judge scenes search_scenes shot_compare
 # tests that are scripts: tests/NAME.sh, called with the build folder
 TEST_SCRIPTS := cli
 # bench/bench_NAME.c each; bench/NAME.c shared by them
