@@ -4,6 +4,7 @@
 #include <errno.h>
 #include <math.h>
 #include <stdio.h>
+#include <string.h>
 
 static const double mm = 1000;	/* in a metre */
 
@@ -85,11 +86,35 @@ static void draw_ball(cairo_t *cr, const struct vision_ball *ball)
 	text_at(cr, ball->px.x + ball->radius_px + 2, ball->px.y + 10, label);
 }
 
-/* A cross: whoever wonders why a ball is missing finds the answer beside it. */
-static void draw_refusal(cairo_t *cr, const struct overlay *overlay, const struct vision_refusal *refused)
+/* Reasons get letters, told at the top of the picture: written out beside each cross they would hide what they speak of. */
+enum { REASON_MAX = 8 };
+struct legend {
+	const char *reason[REASON_MAX];
+	int seen[REASON_MAX];
+	int count;
+};
+
+/* Index of the reason in the legend, which takes it up when it is new. */
+static int legend_entry(struct legend *legend, const char *reason)
 {
-	const double arm = 5;
+	int i = 0;
+	while (i < legend->count && strcmp(legend->reason[i], reason) != 0)
+		i++;
+	if (i == REASON_MAX)
+		return REASON_MAX - 1;
+	if (i == legend->count) {
+		legend->reason[i] = reason;
+		legend->count++;
+	}
+	legend->seen[i]++;
+	return i;
+}
+
+static void draw_refusal(cairo_t *cr, const struct overlay *overlay, const struct vision_refusal *refused, struct legend *legend)
+{
+	const double arm = 4;
 	vec2 px;
+	int letter = 'a' + legend_entry(legend, refused->reason);
 	if (!camera_project(&overlay->result->camera, refused->pos, overlay->table->ball_radius, &px))
 		return;
 	cairo_set_source_rgb(cr, 1, 0.3, 0.9);
@@ -99,9 +124,23 @@ static void draw_refusal(cairo_t *cr, const struct overlay *overlay, const struc
 	cairo_move_to(cr, px.x - arm, px.y + arm);
 	cairo_line_to(cr, px.x + arm, px.y - arm);
 	cairo_stroke(cr);
-	char label[96];
-	snprintf(label, sizeof label, "%s (rim %.2f, inside %.2f)", refused->reason, refused->rim_support, refused->cover);
-	text_at(cr, px.x + arm + 2, px.y + arm, label);
+	char label[32];
+	snprintf(label, sizeof label, "%c %.2f", letter, refused->rim_support);
+	text_at(cr, px.x + arm + 1, px.y + arm, label);
+}
+
+static void draw_refusals(cairo_t *cr, const struct overlay *overlay)
+{
+	struct legend legend = {.count = 0};
+	cairo_set_font_size(cr, 8);
+	for (int i = 0; i < overlay->refused_count; i++)
+		draw_refusal(cr, overlay, &overlay->refused[i], &legend);
+	cairo_set_font_size(cr, 12);
+	for (int i = 0; i < legend.count; i++) {
+		char line[96];
+		snprintf(line, sizeof line, "x %c: refused, %s (%d); rim share", 'a' + i, legend.reason[i], legend.seen[i]);
+		text_at(cr, 10, 62 + 15 * i, line);
+	}
 }
 
 static void draw_state(cairo_t *cr, const struct vision_result *result)
@@ -122,12 +161,11 @@ static void draw(cairo_t *cr, const struct overlay *overlay)
 {
 	const struct vision_result *result = overlay->result;
 	cairo_select_font_face(cr, "DejaVu Sans", CAIRO_FONT_SLANT_NORMAL, CAIRO_FONT_WEIGHT_NORMAL);
-	cairo_set_font_size(cr, 10);
 	if (result->calibration != CALIBRATION_NONE) {
 		draw_table(cr, &result->camera, overlay->table);
-		for (int i = 0; i < overlay->refused_count; i++)
-			draw_refusal(cr, overlay, &overlay->refused[i]);
+		draw_refusals(cr, overlay);
 	}
+	cairo_set_font_size(cr, 10);
 	for (int i = 0; i < result->ball_count; i++)
 		draw_ball(cr, &result->ball[i]);
 	draw_state(cr, result);
