@@ -39,6 +39,8 @@ TEST_SHARED := harness poly_judge scenes search_scenes shot_compare
 TEST_SCRIPTS := cli
 # bench/bench_NAME.c each; bench/NAME.c shared by them
 BENCHES := physics accuracy
+# bench/eval_NAME.c each: accuracy on recorded data
+EVALS := physics
 BENCH_SHARED := report plain_sim plain_sim_long
 # fuzz/fuzz_NAME.c each, seeds in fuzz/corpus/NAME
 FUZZERS := position config shot_file colours image
@@ -79,7 +81,8 @@ ARCHIVES := $(BUILD)/libapp.a $(BUILD)/liblcmtypes.a $(BUILD)/libsearch.a $(BUIL
 PROGRAM_BINS := $(addprefix $(BUILD)/,$(PROGRAMS))
 TEST_BINS := $(patsubst %,$(BUILD)/tests/test_%,$(TESTS))
 FUZZ_BINS := $(patsubst %,$(BUILD)/fuzz_%,$(FUZZERS))
-BENCH_SHARED_O := $(call obj,bench,$(BENCH_SHARED)) $(call obj,tests,scenes)
+BENCH_SHARED_O := $(call obj,bench,$(BENCH_SHARED)) $(call obj,tests,scenes shot_compare)
+EVAL_BINS := $(patsubst %,$(BUILD)/bench/eval_%,$(EVALS))
 BENCH_BINS := $(patsubst %,$(BUILD)/bench/bench_%,$(BENCHES))
 
 .PHONY: all demo check check-built bench eval fuzz fuzzers headers lint install clean setup tests programs
@@ -139,6 +142,8 @@ $(BUILD)/tests/test_%: $(BUILD)/tests/test_%.o $(TEST_SHARED_O) $(ARCHIVES)
 	$(link) $(TEST_LIBS) $(LIBS)
 $(BUILD)/bench/bench_%: $(BUILD)/bench/bench_%.o $(BENCH_SHARED_O) $(ARCHIVES)
 	$(link) $(TEST_LIBS) $(LIBS)
+$(BUILD)/bench/eval_%: $(BUILD)/bench/eval_%.o $(BENCH_SHARED_O) $(ARCHIVES)
+	$(link) $(TEST_LIBS) $(LIBS)
 $(BUILD)/fuzz_%: $(BUILD)/fuzz/fuzz_%.o $(ARCHIVES)
 	$(link) -fsanitize=fuzzer $(LIBS)
 $(PROGRAM_BINS): $(BUILD)/%: $(BUILD)/src/app/main_%.o $(ARCHIVES)
@@ -181,6 +186,10 @@ lint:
 # DESTDIR stages, PREFIX and SYSCONFDIR decide; installed files name the final places. Existing configurations are kept as FILE.new beside them.
 install: programs
 	@scripts/install-files $(BUILD) "$(DESTDIR)" "$(PREFIX)" "$(SYSCONFDIR)" $(PROGRAMS)
+
+eval: setup
+	+@$(MAKE) --no-print-directory -j$(JOBS) programs $(EVAL_BINS) $(BUILD)/tests/test_sim $(BUILD)/tests/test_roots
+	@scripts/run-eval $(BUILD) $(DATA) $(EVALS)
 
 headers:
 	@CC="$(CC)" BUILD=$(BUILD) scripts/check-headers

@@ -210,7 +210,8 @@ static bool is_in(const struct event *event, const struct plain_event *log, int 
 	return false;
 }
 
-/* Events of one instant (two equal balls begin to roll together) may come in any order: brings the log's into the reference's. */
+/* Events of one instant (two equal balls begin to roll together) may come in any order: brings the log's into the
+ * reference's. */
 static void settle_tie(const struct event *want, struct plain_event *log, int i, int count)
 {
 	const double tie = 1e-7; /* s */

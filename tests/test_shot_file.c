@@ -1,12 +1,11 @@
 #include "harness.h"
 
 #include <errno.h>
-#include <jansson.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 
-#include "app/shot_file.h"
+#include "shot_compare.h"
 
 /* A table of four rails, one pocket and one jaw, two balls; every part replaced by the tests that break it. */
 struct parts {
@@ -195,108 +194,37 @@ END_TEST
 /* ---- the recorded shots with the simplest models: every event -------------------------------------------------------
  */
 
-static const double TIME_BAR = 5e-6, PLACE_BAR = 2e-6, TIE = 2e-6; /* s, m, s */
-
-static bool same_event(const json_t *ours, const json_t *theirs)
-{
-	if (strcmp(json_string_value(json_object_get(ours, "event")),
-		   json_string_value(json_object_get(theirs, "type"))) != 0)
-		return false;
-	const json_t *a = json_object_get(ours, "ids"), *b = json_object_get(theirs, "ids");
-	return json_equal(a, b) || (json_array_size(a) == 2 && json_equal(json_array_get(a, 0), json_array_get(b, 1)) &&
-				    json_equal(json_array_get(a, 1), json_array_get(b, 0)));
-}
-
-static double place_error(const json_t *ours, const json_t *theirs)
-{
-	double worst = 0;
-	const char *id;
-	json_t *state;
-	json_object_foreach(json_object_get(theirs, "post"), id, state)
-	{
-		const json_t *r = json_object_get(state, "r");
-		const json_t *o = json_object_get(json_object_get(json_object_get(ours, "post"), id), "r");
-		for (size_t k = 0; k < 2; k++) {
-			double d = json_number_value(json_array_get(o, k)) - json_number_value(json_array_get(r, k));
-			worst = fmax(worst, fabs(d));
-		}
-	}
-	return worst;
-}
-
-/* Their events in order, each with ours of the same kind and balls next in order; ours may swap within TIE. */
-static void compare(json_t *ours, const json_t *theirs, const char *what, double worst[2])
-{
-	size_t i;
-	json_t *event;
-	json_array_foreach(theirs, i, event)
-	{
-		const char *type = json_string_value(json_object_get(event, "type"));
-		if (strcmp(type, "none") == 0 || strcmp(type, "stick_ball") == 0)
-			continue;
-		double t = json_number_value(json_object_get(event, "t")), first = 0;
-		size_t k = 0;
-		for (; k < json_array_size(ours); k++) {
-			const json_t *mine = json_array_get(ours, k);
-			double time = json_number_value(json_object_get(mine, "t"));
-			first = k ? first : time;
-			ck_assert_msg(time - first <= TIE, "%s: order differs at %.9f s", what, t);
-			if (same_event(mine, event))
-				break;
-		}
-		ck_assert_msg(k < json_array_size(ours), "%s: %s at %.9f s is missing", what, type, t);
-		const json_t *mine = json_array_get(ours, k);
-		worst[0] = fmax(worst[0], fabs(json_number_value(json_object_get(mine, "t")) - t));
-		worst[1] = fmax(worst[1], place_error(mine, event));
-		json_array_remove(ours, k);
-	}
-	ck_assert_msg(json_array_size(ours) == 0, "%s: %zu events too many", what, json_array_size(ours));
-}
-
-static void compare_shot(const json_t *root, const json_t *shot, double worst[2])
-{
-	const char *name = json_string_value(json_object_get(shot, "set"));
-	json_t *set = json_object_get(json_object_get(root, "sets"), name);
-	const char *table = json_string_value(json_object_get(set, "table"));
-	json_t *one = json_pack("{s:O, s:O, s:O, s:O, s:O, s:O}", "table",
-				json_object_get(json_object_get(root, "tables"), table), "params",
-				json_object_get(set, "ball_params"), "models", json_object_get(set, "models"), "cue",
-				json_object_get(shot, "cue"), "balls", json_object_get(shot, "balls"), "post_strike",
-				json_object_get(shot, "post_strike"));
-	char *text = json_dumps(one, JSON_REAL_PRECISION(17)), err[300] = "";
-	static struct shot_file file;
-	ck_assert_msg(shot_file_parse(&file, name, text, strlen(text), err, sizeof err) == 0, "%s", err);
-	json_t *ours = run(&file);
-	compare(ours, json_object_get(shot, "events"), name, worst);
-	json_decref(ours);
-	free(text);
-	json_decref(one);
-}
+static const double TIME_BAR = 5e-6, PLACE_BAR = 2e-6; /* s, m */
 
 START_TEST(simple_shots_are_reproduced_event_by_event)
 {
 	const char *folder = test_data_folder("simple_shots_are_reproduced_event_by_event");
 	if (!folder)
 		return;
-	char path[512];
+	char path[512], err[300] = "";
 	snprintf(path, sizeof path, "%s/shots/pooltool_shots.json", folder);
 	json_t *root = json_load_file(path, 0, NULL), *shot;
 	ck_assert_ptr_nonnull(root);
 	size_t i;
 	int count = 0;
-	double worst[2] = {0, 0};
+	double dt = 0, dpos = 0;
 	json_array_foreach(json_object_get(root, "shots"), i, shot)
 	{
-		if (strncmp(json_string_value(json_object_get(shot, "set")), "simple_", 7) == 0) {
-			compare_shot(root, shot, worst);
-			count++;
-		}
+		if (strncmp(json_string_value(json_object_get(shot, "set")), "simple_", 7) != 0)
+			continue;
+		static struct shot_file file;
+		ck_assert_msg(shot_from_collection(root, shot, &file, err, sizeof err) == 0, "%s", err);
+		struct shot_comparison c = shot_compare(&file, json_object_get(shot, "events"), 0);
+		ck_assert_msg(c.same, "shot %zu differs at %.9f s", i, c.time);
+		dt = fmax(dt, c.dt);
+		dpos = fmax(dpos, c.dpos);
+		count++;
 	}
 	json_decref(root);
-	printf("%d shots: times within %.2g s, positions within %.2g m\n", count, worst[0], worst[1]);
+	printf("%d shots: times within %.2g s, positions within %.2g m\n", count, dt, dpos);
 	ck_assert_int_gt(count, 0);
-	ck_assert_double_le(worst[0], TIME_BAR);
-	ck_assert_double_le(worst[1], PLACE_BAR);
+	ck_assert_double_le(dt, TIME_BAR);
+	ck_assert_double_le(dpos, PLACE_BAR);
 }
 END_TEST
 
