@@ -5,8 +5,8 @@
 
 static const double EDGE_SLACK = 0.007;		/* m a fitted centre may lie beyond where cushions let it be */
 static const double MOUTH_INNER = 0.8;		/* of a pocket's radius: nearer to its centre a ball has fallen */
-static const double SUPPORT_SEED = 0.4, SUPPORT_MIN = 0.62;
-static const double SUPPORT_CROWDED = 0.3;	/* more of it is wanted where it lies among other foreign things */
+static const double SUPPORT_SEED = 0.48, SUPPORT_PACKED = 0.33, SUPPORT_MIN = 0.62;
+static const double SUPPORT_CROWDED = 0.5, RING_FREE = 0.3;	/* more of it is wanted where it lies among other foreign things */
 static const double COVER_MIN = 0.55;
 static const double SCALE_MIN = 0.86, SCALE_MAX = 1.085;
 static const double USUAL_SCALE = 0.965, USUAL_SPREAD = 0.02;	/* apparent radius of any ball */
@@ -59,7 +59,7 @@ static double cover_at(const struct detector *d, vec2 px, double reach)
 	int r = (int)(reach * SMALL_RADIUS), in = 0, marked = 0;
 	for (int y = (int)mid.y - r; y <= (int)mid.y + r; y++)
 		for (int x = (int)mid.x - r; x <= (int)mid.x + r; x++) {
-			if (x < 0 || y < 0 || x >= s->width || y >= s->height || hypot(x - mid.x, y - mid.y) > r)
+			if (x < 0 || y < 0 || x >= s->width || y >= s->height || (x - mid.x) * (x - mid.x) + (y - mid.y) * (y - mid.y) > r * r)
 				continue;
 			in++;
 			marked += s->mark[y * s->width + x] >= SCAN_FOREIGN / 2;
@@ -78,12 +78,12 @@ static void look_around(struct detector *d, struct candidate *c, bool ring)
 		for (int x = (int)mid.x - reach; x <= (int)mid.x + reach; x++) {
 			if (x < 0 || y < 0 || x >= s->width || y >= s->height)
 				continue;
-			double q = hypot(x - mid.x, y - mid.y) / r;
+			double q2 = ((x - mid.x) * (x - mid.x) + (y - mid.y) * (y - mid.y)) / (r * r);
 			int mark = s->mark[y * s->width + x] >= SCAN_FOREIGN / 2;
-			if (q < 0.8) {
+			if (q2 < 0.8 * 0.8) {
 				in++;
 				marked += mark;
-			} else if (ring && q > 1.2 && q < 1.5) {
+			} else if (ring && q2 > 1.2 * 1.2 && q2 < 1.5 * 1.5) {
 				bool ball = false;
 				for (int i = 0; i < d->count && !ball; i++)
 					ball = vec2_dist(scan_to_full(s, x, y), d->candidate[i].fit.outline.centre) <
@@ -136,7 +136,7 @@ static bool is_known(const struct detector *d, vec2 pos)
 	return false;
 }
 
-static void try_place(struct detector *d, const struct fit_view *view, vec2 px)
+static void try_place(struct detector *d, const struct fit_view *view, vec2 px, double support)
 {
 	struct candidate c = {
 		.fit = {.scale = USUAL_SCALE, .expected_scale = USUAL_SCALE, .scale_spread = USUAL_SPREAD},
@@ -147,7 +147,7 @@ static void try_place(struct detector *d, const struct fit_view *view, vec2 px)
 		return;
 	scan_cloth_at(&d->scan, px, c.fit.cloth);
 	bool fitted = fit_refine(view, &c.fit, 2);
-	if (!fitted || c.fit.support < SUPPORT_SEED)
+	if (!fitted || c.fit.support < support)
 		refuse(d, &c, REFUSED_FIT);
 	else if (!detect_possible(d->table, c.fit.pos))
 		refuse(d, &c, REFUSED_PLACE);
@@ -188,7 +188,7 @@ static void try_packed(struct detector *d, struct fit_view *view)
 				vec2 pos = vec2_madd(vec2_madd(a, 0.5, way), side * 0.8660254, vec2_perp(way));
 				if (is_vacant(d, pos) && camera_project(view->camera, pos, view->radius, &px) &&
 				    cover_at(d, px, 0.8) > PACK_COVER)
-					try_place(d, view, px);
+					try_place(d, view, px, SUPPORT_PACKED);
 			}
 		}
 	view->other_count = 0;
@@ -200,7 +200,7 @@ static enum refusal judge(const struct detector *d, const struct candidate *c)
 		return REFUSED_PLACE;
 	if (c->cover < COVER_MIN)
 		return REFUSED_INSIDE;
-	if (c->fit.support < SUPPORT_MIN + SUPPORT_CROWDED * c->ring)
+	if (c->fit.support < SUPPORT_MIN + SUPPORT_CROWDED * fmax(0, c->ring - RING_FREE))
 		return REFUSED_RIM;
 	if (c->fit.scale < SCALE_MIN || c->fit.scale > SCALE_MAX)
 		return REFUSED_SIZE;
@@ -243,14 +243,24 @@ static void expect_scales(struct detector *d)
 	}
 }
 
-/* Fits all again, each knowing its neighbours. */
-static void fit_together(struct detector *d, struct fit_view *view, int steps)
+static void find_alone(struct detector *d)
+{
+	for (int i = 0; i < d->count; i++) {
+		bool alone = true;
+		for (int j = 0; j < d->count && alone; j++)
+			alone = j == i || vec2_dist(d->candidate[i].fit.pos, d->candidate[j].fit.pos) > 3.2 * d->table->ball_radius;
+		d->candidate[i].alone = alone;
+	}
+}
+
+/* Fits all again, each knowing its neighbours. Those without any need it only once. */
+static void fit_together(struct detector *d, struct fit_view *view, int round, int steps)
 {
 	struct fit other[DETECT_MAX];
 	know_neighbours(d, view, other);
 	for (int i = 0; i < d->count; i++) {
 		struct candidate *c = &d->candidate[i];
-		if (!c->fixed && !fit_refine(view, &c->fit, steps))
+		if (!c->fixed && (round == 0 || !c->alone) && !fit_refine(view, &c->fit, steps))
 			c->refusal = REFUSED_FIT;
 	}
 	view->other_count = 0;
@@ -331,7 +341,8 @@ static void settle(struct detector *d, struct fit_view *view)
 	for (int round = 0; round < 3; round++) {
 		look(d, view->frame);
 		expect_scales(d);
-		fit_together(d, view, 2);
+		find_alone(d);
+		fit_together(d, view, round, 2);
 		refuse_overlaps(d);
 		drop_refused(d);
 		push_apart(d, 4);
@@ -403,7 +414,7 @@ void detector_search(struct detector *d, const struct image *frame, const struct
 	struct fit_view view = view_of(d, frame, camera);
 	seeds_find(&d->seeds, &d->scan, active);
 	for (int i = 0; i < d->seeds.count; i++)
-		try_place(d, &view, d->seeds.seed[i].px);
+		try_place(d, &view, d->seeds.seed[i].px, SUPPORT_SEED);
 }
 
 void detector_settle(struct detector *d, const struct image *frame, const struct camera *camera)

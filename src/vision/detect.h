@@ -20,6 +20,7 @@ struct candidate {
 	double confidence;	/* 0..1 */
 	enum refusal refusal;
 	bool fixed;		/* known from before and unchanged: neither fitted nor judged again */
+	bool alone;		/* no neighbour near enough to hide any of its rim */
 	int tag;		/* the caller's, -1 for what was found anew */
 };
 

@@ -5,8 +5,8 @@
 
 #include "vision/linear.h"
 
-enum { REACH_WIDE = 10, REACH_NARROW = 7 };	/* samples to either side of the rim */
-static const double STEP_SHARE = 1 / 31.0;	/* distance of samples over the radius: half a pixel at 15.5 px */
+enum { REACH_WIDE = 7, REACH_NARROW = 5 };	/* samples to either side of the rim */
+static const double STEP_SHARE = 1 / 20.0;	/* distance of samples over the radius: 0.78 px at 15.5 px */
 static const double CONTRAST_MIN = 12;		/* levels; a weaker edge is noise */
 static const double CONTRAST_FULL = 40;
 /* How far an edge usually lies off, px; edges side by side err alike, so each counts less than its own noise would say. */
@@ -14,6 +14,8 @@ static const double EDGE_PX = 0.9;
 /* In a crease between balls the own dark limb belongs to the outside: the edge is seen this far inside of the rim. */
 static const double CREASE_PX = -0.5, CREASE_SPREAD_PX = 0.8;
 static const float CREASE_CHROMA2 = 0.16f * 0.16f, CREASE_SHADE = 0.33f;
+static const double EDGES_MIN = 0.3;		/* share of open rays with any edge at all */
+static const double EXPLAINED_MIN = 0.3;		/* share of them that one outline explains */
 static const double SUPPORT_PX = 1.1;		/* an edge this near is where it should be */
 
 struct edge {
@@ -24,19 +26,20 @@ struct edge {
 	double contrast;
 };
 
-/* Bilinear, BGR. False outside of the frame. */
-static inline bool sample(const struct image *im, double x, double y, float out[3])
+/* Bilinear, BGR; the place must lie inside of the frame. */
+static inline void sample(const struct image *im, float x, float y, float out[3])
 {
-	int ix = (int)floor(x), iy = (int)floor(y);
-	if (ix < 0 || iy < 0 || ix + 1 >= im->width || iy + 1 >= im->height)
-		return false;
-	float fx = (float)(x - ix), fy = (float)(y - iy);
-	const uint8_t *a = im->data + iy * im->stride + 3 * ix, *b = a + im->stride;
-	for (int c = 0; c < 3; c++) {
-		float top = (float)a[c] + fx * (float)(a[c + 3] - a[c]), bottom = (float)b[c] + fx * (float)(b[c + 3] - b[c]);
-		out[c] = top + fy * (bottom - top);
-	}
-	return true;
+	int ix = (int)x, iy = (int)y;
+	float fx = x - (float)ix, fy = y - (float)iy;
+	const uint8_t *a = im->data + iy * im->stride + 3 * (ptrdiff_t)ix, *b = a + im->stride;
+	float w00 = (1 - fx) * (1 - fy), w10 = fx * (1 - fy), w01 = (1 - fx) * fy, w11 = fx * fy;
+	for (int c = 0; c < 3; c++)
+		out[c] = w00 * (float)a[c] + w10 * (float)a[c + 3] + w01 * (float)b[c] + w11 * (float)b[c + 3];
+}
+
+static bool is_inside(const struct image *im, double x, double y)
+{
+	return x >= 0 && y >= 0 && x < im->width - 1 && y < im->height - 1;
 }
 
 /* Where the profile v (1 inside, 0 outside) falls through a half nearest to the middle. */
@@ -76,10 +79,12 @@ static bool profile(const struct image *im, const struct ray *ray, const float c
 	double step = ray->step;
 	int count = 2 * reach + 1, ends = reach / 2;
 	float colour[2 * REACH_WIDE + 1][3], in[3] = {0}, out[3] = {0}, d[3], dd = 0;
+	double far = reach * step;
+	if (!is_inside(im, p.x - far * n.x, p.y - far * n.y) || !is_inside(im, p.x + far * n.x, p.y + far * n.y))
+		return false;
 	for (int j = 0; j < count; j++) {
 		double t = (j - reach) * step;
-		if (!sample(im, p.x + t * n.x, p.y + t * n.y, colour[j]))
-			return false;
+		sample(im, (float)(p.x + t * n.x), (float)(p.y + t * n.y), colour[j]);
 	}
 	for (int j = 0; j < ends; j++)
 		for (int c = 0; c < 3; c++) {
@@ -186,6 +191,29 @@ static void judge(struct fit *fit, const struct edge edge[OUTLINE_POINTS], doubl
 	fit->contrast = good > 0 ? contrast / good : 0;
 }
 
+/* Share of the open rays whose edges the solution explains. */
+static double edges_explained(const struct fit *fit, const struct edge edge[OUTLINE_POINTS], double cut, const double x[UNKNOWNS])
+{
+	int good = 0, open = 0;
+	for (int i = 0; i < OUTLINE_POINTS; i++) {
+		double off = edge[i].offset - fit->outline.normal[i].x * x[SHIFT_X] - fit->outline.normal[i].y * x[SHIFT_Y] -
+			     x[GROWTH] - (edge[i].crease ? x[CREASE] : 0);
+		good += edge[i].found && fabs(off) < cut;
+		open += !edge[i].hidden;
+	}
+	return open > 0 ? (double)good / open : 0;
+}
+
+static double edges_found(const struct edge edge[OUTLINE_POINTS])
+{
+	int found = 0, open = 0;
+	for (int i = 0; i < OUTLINE_POINTS; i++) {
+		found += edge[i].found;
+		open += !edge[i].hidden;
+	}
+	return open > 0 ? (double)found / open : 0;
+}
+
 bool fit_refine(const struct fit_view *view, struct fit *fit, int steps)
 {
 	vec2 from = fit->pos;
@@ -198,8 +226,14 @@ bool fit_refine(const struct fit_view *view, struct fit *fit, int steps)
 		find_edges(view, fit, s == 0 ? REACH_WIDE : REACH_NARROW, edge);
 		if (last)
 			break;
+		/* Nothing like a rim: no use going on. */
+		if (s == 0 && edges_found(edge) < EDGES_MIN)
+			return false;
 		double j[4];
-		solve_shift(fit, edge, (s == 0 ? 4 : 2) * fit->outline.radius_px / 15.5, shift);
+		double unit = fit->outline.radius_px / 15.5;
+		solve_shift(fit, edge, (s == 0 ? 4 : 2) * unit, shift);
+		if (s == 0 && edges_explained(fit, edge, 2 * unit, shift) < EXPLAINED_MIN)
+			return false;
 		if (!outline_jacobian(view->camera, fit->pos, view->radius, j))
 			return false;
 		double det = j[0] * j[3] - j[1] * j[2];
