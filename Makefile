@@ -191,7 +191,7 @@ eval: setup
 	+@$(MAKE) --no-print-directory -j$(JOBS) programs $(EVAL_BINS) $(BUILD)/tests/test_sim $(BUILD)/tests/test_roots
 	@scripts/run-eval $(BUILD) $(DATA) $(EVALS)
 
-headers:
+headers: $(BUILD)/lcmtypes/.stamp
 	@CC="$(CC)" BUILD=$(BUILD) scripts/check-headers
 
 clean:
