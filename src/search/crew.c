@@ -327,7 +327,7 @@ void crew_figures(const struct crew *crew, struct plan_figures *out)
 		out->windows_held += atomic_load(&worker->held);
 		out->windows_missed += atomic_load(&worker->missed);
 		out->windows_late += atomic_load(&worker->late);
-		out->windows_overlapped += atomic_load(&worker->overlapped);
+		out->windows_blocked += atomic_load(&worker->blocked);
 		out->on_demand += atomic_load(&worker->on_demand);
 		out->waited += atomic_load(&worker->waited);
 		out->open += over ? 0 : atomic_load(&worker->open_count);

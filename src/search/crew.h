@@ -27,7 +27,7 @@ struct worker {
 	double window;			/* s, when its next one begins */
 	_Atomic uint64_t count[COUNT_KINDS];	/* since the beginning, as are those below */
 	uint64_t before[COUNT_KINDS];		/* this search */
-	_Atomic uint64_t held, missed, late, overlapped, on_demand;
+	_Atomic uint64_t held, missed, late, blocked, on_demand;
 	_Atomic double waited;
 
 	struct node inbox[INBOX_MAX];	/* under crew->lock */
@@ -70,7 +70,7 @@ struct crew {
 	_Atomic double next_serve;	/* s, when the manager's next window begins */
 	bool serve_all;			/* under lock: serve every worker, not only those that have nothing */
 	atomic_bool relief;		/* a worker has nothing and neither has the manager: who has some gives at once */
-	atomic_int handing_over;
+	atomic_bool handing_over;	/* one has its window */
 };
 
 /* 0, -ENOMEM; *out is NULL on failure. planner is borrowed and must have its pool with a thread for each worker. */

@@ -144,6 +144,7 @@ static void run_batches(struct planner *planner, plan_progress_fn *progress, voi
 			progress(context, result);
 		}
 	}
+	planner->overflow |= planner->frontier.overflow;
 	show_end(planner);
 }
 

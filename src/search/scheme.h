@@ -26,7 +26,7 @@ struct plan_figures {
 	uint64_t windows_held;		/* hand-overs that began in their own window */
 	uint64_t windows_missed;	/* windows that went by while their worker was busy with one node */
 	uint64_t windows_late;		/* hand-overs that began in time and ended after their window */
-	uint64_t windows_overlapped;	/* hand-overs that began while another went on */
+	uint64_t windows_blocked;	/* windows in which another's late hand-over still went on: none begins then, so that none overlap */
 	uint64_t on_demand;		/* nodes given away outside of windows because another worker had none: hand-overs or thefts */
 	double waited;			/* s that workers had nothing to do during searches; 0 without a clock */
 	uint32_t open;			/* nodes now; a snapshot */

@@ -31,7 +31,7 @@ static void begin(struct crew *crew)
 	atomic_store(&crew->next_serve, crew->start + k + crew->worker_count * n);
 	crew->serve_all = false;
 	atomic_store(&crew->relief, false);
-	atomic_store(&crew->handing_over, 0);
+	atomic_store(&crew->handing_over, false);
 }
 
 static void wake_manager(struct crew *crew)
@@ -63,12 +63,14 @@ static int at_most(double count)
 
 static void hold_window(struct crew *crew, struct worker *worker)
 {
-	if (atomic_fetch_add(&crew->handing_over, 1) > 0)
-		count_up(&worker->overlapped, 1);
+	if (atomic_exchange(&crew->handing_over, true)) {
+		count_up(&worker->blocked, 1);
+		return;
+	}
 	pthread_mutex_lock(&crew->lock);
 	hand_over(crew, worker, at_most(HAND_OVER_SHARE * worker->open.count), false);
 	pthread_mutex_unlock(&crew->lock);
-	atomic_fetch_sub(&crew->handing_over, 1);
+	atomic_store(&crew->handing_over, false);
 	count_up(&worker->held, 1);
 }
 
