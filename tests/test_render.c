@@ -164,13 +164,15 @@ static void put_keyframe(int ball, double begin, double end, vec2 pos, vec2 vel,
 START_TEST(animated_balls_move_by_their_keyframes)
 {
 	memset(&animation, 0, sizeof(animation));
-	animation.ball_count = 2;
+	animation.ball_count = 3;
 	animation.ball_radius = 0.026;
 	put_keyframe(0, 0, 1, (vec2){0, 0}, (vec2){0.5, 0}, (vec2){-0.2, 0}, BALL_ROLLING);
 	put_keyframe(1, 1, 2, (vec2){0.5, 0}, (vec2){0, 0.1}, (vec2){0, 0}, BALL_ROLLING);
 	put_keyframe(0, 1, 2, (vec2){0.4, 0}, (vec2){0, 0}, (vec2){0, 0}, BALL_REST);
 	put_keyframe(1, 2, 2, (vec2){0.5, 0.1}, (vec2){0, 0}, (vec2){0, 0}, BALL_POTTED);
+	put_keyframe(2, 0, 9, (vec2){-0.5, 0}, (vec2){0, 0}, (vec2){0, 0}, BALL_REST);
 	vec2 pos;
+	ck_assert(!render_animated(&animation, 2, 1, &pos)); /* lies where the real one lies */
 	ck_assert(render_animated(&animation, 0, 0.5, &pos));
 	ck_assert_double_eq_tol(pos.x, 0.25 - 0.025, 1e-12);
 	ck_assert(!render_animated(&animation, 1, 0.5, &pos));

@@ -175,14 +175,18 @@ static void draw_layers(const struct render *render, const billiard_draw_list_t 
 
 bool render_animated(const billiard_animation_t *animation, int ball, double t, vec2 *pos)
 {
+	enum { KEYFRAMES = sizeof(animation->keyframes) / sizeof(animation->keyframes[0]) };
 	const billiard_keyframe_t *last = NULL;
-	int count = animation->keyframe_count;
-	for (int i = 0; i < count && i < (int)(sizeof(animation->keyframes) / sizeof(animation->keyframes[0])); i++) {
+	bool moved = false;
+	for (int i = 0; i < animation->keyframe_count && i < KEYFRAMES; i++) {
 		const billiard_keyframe_t *key = &animation->keyframes[i];
-		if (key->ball == ball && key->begin <= t && (!last || key->begin >= last->begin))
+		if (key->ball != ball || key->begin > t)
+			continue;
+		moved |= key->vx != 0 || key->vy != 0;
+		if (!last || key->begin >= last->begin)
 			last = key;
 	}
-	if (!last || last->phase == BALL_POTTED)
+	if (!moved || last->phase == BALL_POTTED)
 		return false;
 	double s = fmax(0, fmin(t, last->end) - last->begin);
 	*pos = (vec2){last->x + last->vx * s + last->ax * s * s / 2, last->y + last->vy * s + last->ay * s * s / 2};

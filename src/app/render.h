@@ -15,8 +15,8 @@ void render_destroy(struct render *render);	/* NULL is fine */
 void render_draw(struct render *render, const billiard_draw_list_t *list, const billiard_animation_t *animation, double t);
 /* The picture: 32-bit xRGB in native order, rows from the top, stride in bytes; borrowed until the next render_draw(). */
 const uint32_t *render_pixels(const struct render *render, int *width, int *height, int *stride);
-/* Place of an animated ball t s after the strike: by its keyframe begun last (thesis 4.6.5). False when it has none yet or
- * is potted. */
+/* Place of an animated ball t s after the strike: by its keyframe begun last (thesis 4.6.5). False when it has
+ * not moved yet (the real ball lies there, and light on it only disturbs) or is potted. */
 bool render_animated(const billiard_animation_t *animation, int ball, double t, vec2 *pos);
 /* 0 or a negative errno with reason. */
 int render_write_png(struct render *render, const char *path, char *err, size_t err_size);
