@@ -21,7 +21,7 @@ PHYSICS := ball collide contact contact_ball_real contact_mathavan contact_stron
 	roots sim table trace
 SEARCH := candidate cost crew figures frontier geometry plan play pool rank refine request respot \
 	rules safety scheme share_queue share_steal share_windows shot solutions step tolerance
-VISION := calibration camera colour detect fit linear outline pose reason scan seeds stabilise track vision
+VISION := calibration camera colour detect fit linear marker_edges outline pose reason scan seeds stabilise track vision
 VISION_CV := capture_cv image_io_cv markers_cv marker_image_cv
 # app: what the programs share
 APP := text_file shot_file colour_file cmd_calibrate config config_reader config_table config_vision position cmd cmd_simulate cmd_detect cmd_plan plot overlay draw draw_field draw_path draw_proposal render \

@@ -1,0 +1,560 @@
+#include "app/controller.h"
+
+#include <math.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "app/bus.h"
+#include "harness.h"
+
+/* The controller fed with messages as they come from the bus; nothing else is real. 30 frames a second. */
+enum { FRAME_US = 33333, MANY = 60 };
+static struct config config;		/* too large for the stack */
+static struct controller c;
+static billiard_table_state_t state;
+static double now;
+static int64_t draws, requests, cancels;
+
+static void place(int i, enum ball_colour colour, double x, double y)
+{
+	struct ball ball = ball_at(colour, (vec2){x, y});
+	ball_to_message(&state.balls[i], &ball, "", i + 1);
+}
+
+static void setup(void)
+{
+	char err[640];
+	ck_assert_msg(config_load(&config, "config/thesis-table.conf", err, sizeof err) == 0, "%s", err);
+	controller_init(&c, &config);
+	state = (billiard_table_state_t){.utime = 1000000, .calibration = 1, .markers = 4, .ball_count = 4};
+	place(0, COLOUR_WHITE, -0.3, 0);
+	place(1, COLOUR_RED, 0.3, 0.2);
+	place(2, COLOUR_RED, 0.5, -0.2);
+	place(3, COLOUR_BLACK, 0.8938, 0);
+	now = 100;
+	draws = requests = cancels = 0;
+}
+
+/* What the process around it would send. */
+static struct controller_output flush(void)
+{
+	struct controller_output out = c.output;
+	c.output = (struct controller_output){0};
+	draws += out.draw;
+	requests += out.request;
+	cancels += out.cancel;
+	return out;
+}
+
+static bool frame(void)
+{
+	state.utime += FRAME_US;
+	state.seq++;
+	now += 1e-6 * FRAME_US;
+	bool ok = controller_state(&c, &state, now);
+	controller_tick(&c, now);
+	flush();
+	return ok;
+}
+
+static void frames(int count)
+{
+	for (int i = 0; i < count; i++)
+		ck_assert(frame());
+}
+
+/* Balls roll for some frames and stop elsewhere. */
+static void shot(void)
+{
+	for (int i = 0; i < 10; i++) {
+		state.balls[0].x += 0.01;
+		frame();
+	}
+}
+
+static billiard_plan_t *answer(int8_t status, double angle)
+{
+	static billiard_plan_t plan;
+	plan_message_begin(&plan, &c.request);
+	plan.status = status;
+	plan.is_final = 1;
+	if (status != PLAN_MESSAGE_OK)
+		return &plan;
+	plan.entry_count = 2;
+	for (int i = 0; i < 2; i++) {
+		plan.entries[i].shot_count = 1;
+		billiard_plan_shot_t *s = &plan.entries[i].shots[0];
+		*s = (billiard_plan_shot_t){.angle = angle + i, .speed = 1, .target = 1, .pocket = (int16_t)i, .chain_count = 2, .chain = {0, 1, -1, -1}};
+		for (int k = 0; k < plan.ball_count; k++) {
+			s->start_x[k] = c.request.balls[k].x;
+			s->start_y[k] = c.request.balls[k].y;
+			s->start_on[k] = 1;
+		}
+		s->keyframe_first = plan.keyframe_count;
+		s->keyframe_count = 1;
+		plan.keyframes[plan.keyframe_count++] =
+			(billiard_keyframe_t){.end = 2, .phase = BALL_ROLLING, .event = EVENT_STRIKE, .x = s->start_x[0], .y = s->start_y[0],
+					      .vx = cos(s->angle), .vy = sin(s->angle)};
+	}
+	return &plan;
+}
+
+static bool command(const char *name, const char *argument)
+{
+	billiard_command_t m = {.utime = 1};
+	bus_set_text(m.name, sizeof m.name, name);
+	bus_set_text(m.argument, sizeof m.argument, argument);
+	bool ok = controller_command(&c, &m, now);
+	flush();
+	return ok;
+}
+
+/* To a table with a proposal on it. */
+static void proposed(void)
+{
+	frames(MANY);
+	ck_assert(controller_plan(&c, answer(PLAN_MESSAGE_OK, 0.5), now));
+	flush();
+	ck_assert_int_eq(c.fsm.state, FSM_SHOWING);
+}
+
+/* ---- the way of a proposal ------------------------------------------------------------------------------------------ */
+
+START_TEST(a_resting_table_is_asked_for_once)
+{
+	frames(config.infinity.still_frames);
+	ck_assert_int_eq(requests, 0);
+	frames(MANY);
+	ck_assert_int_eq(requests, 1);
+	ck_assert_int_eq(c.fsm.state, FSM_PLANNING);
+	ck_assert_int_gt(c.request.id, 0);
+	ck_assert_int_eq(c.request.ball_count, 4);
+	ck_assert(c.request.depth == config.planner.depth && c.request.rails == config.planner.rails &&
+		  c.request.max_balls == config.planner.balls && c.request.speeds == config.planner.speeds &&
+		  c.request.plans == config.planner.plans && c.request.budget_s == config.planner.budget);
+	for (int i = 0; i < 4; i++)
+		ck_assert(c.request.balls[i].x == state.balls[i].x && c.request.balls[i].y == state.balls[i].y &&
+			  c.request.balls[i].colour == state.balls[i].colour);
+	ck_assert_str_eq((const char *)c.request.balls[2].name, "RED1");
+	struct plan_request r;
+	char err[96];
+	ck_assert_msg(plan_request_from_message(&r, &c.request, &config.table, err, sizeof err) == 0, "%s", err);
+}
+END_TEST
+
+START_TEST(an_answer_is_drawn_and_stays)
+{
+	proposed();
+	ck_assert(draw_check(&c.draw));
+	ck_assert_int_eq(c.draw.plan_id, c.request.id);
+	ck_assert_int_gt(c.draw.item_count, 0);
+	ck_assert(plan_message_animation_check(&c.animation) && c.animation.keyframe_count == 1 && c.animation.run);
+	int64_t before = draws;
+	frames(MANY);
+	ck_assert(draws == before && requests == 1 && c.proposals == 1);
+}
+END_TEST
+
+START_TEST(a_shot_takes_it_off_and_asks_anew)
+{
+	proposed();
+	int64_t id = c.request.id;
+	shot();
+	ck_assert_int_eq(c.fsm.state, FSM_SHOT);
+	ck_assert(c.draw.plan_id == 0 && c.draw.item_count == 0 && c.animation.keyframe_count == 0);
+	frames(MANY);
+	ck_assert_int_eq(c.fsm.state, FSM_PLANNING);
+	ck_assert_int_gt(c.request.id, id);
+	ck_assert_int_eq(cancels, 0);
+}
+END_TEST
+
+START_TEST(motion_while_planning_cancels)
+{
+	frames(MANY);
+	int64_t id = c.request.id;
+	shot();
+	ck_assert_int_eq(cancels, 1);
+	ck_assert(controller_plan(&c, answer(PLAN_MESSAGE_OK, 0.5), now));
+	ck_assert(c.fsm.state == FSM_WATCHING && c.draw.plan_id == 0 && c.proposals == 0);
+	frames(MANY);
+	ck_assert_int_gt(c.request.id, id);
+}
+END_TEST
+
+START_TEST(improved_answers_replace_repeated_ones_do_not)
+{
+	proposed();
+	billiard_plan_t *plan = answer(PLAN_MESSAGE_OK, 0.9);
+	plan->sequence = 3;
+	ck_assert(controller_plan(&c, plan, now));
+	ck_assert_double_eq(c.plan.entries[0].shots[0].angle, 0.9);
+	plan = answer(PLAN_MESSAGE_OK, 0.2);
+	plan->sequence = 2;	/* late */
+	ck_assert(controller_plan(&c, plan, now));
+	ck_assert_double_eq(c.plan.entries[0].shots[0].angle, 0.9);
+	ck_assert_int_eq(c.proposals, 1);
+}
+END_TEST
+
+START_TEST(no_plan_is_said_on_the_table)
+{
+	frames(MANY);
+	billiard_plan_t *plan = answer(PLAN_MESSAGE_NONE, 0);
+	bus_set_text(plan->reason, sizeof plan->reason, "no shot found");
+	ck_assert(controller_plan(&c, plan, now));
+	ck_assert_int_eq(c.fsm.state, FSM_SHOWING);
+	ck_assert_str_eq(c.drawn_note, "no shot found");
+	ck_assert(command("halo", ""));
+	ck_assert_str_eq(c.drawn_note, "no shot found");
+	command("next", "");
+	command("previous", "");
+	ck_assert_int_eq(c.draw.plan_id, 0);
+	frames(MANY);
+	ck_assert_int_eq(requests, 1);
+}
+END_TEST
+
+/* ---- lost, doubled, late, malformed --------------------------------------------------------------------------------- */
+
+START_TEST(a_lost_request_or_answer_is_repeated)
+{
+	frames(MANY);
+	int64_t id = c.request.id;
+	int wait = (int)(config.infinity.plan_timeout * 30) + 5;
+	frames(wait);
+	ck_assert(requests == 2 && c.request.id == id);
+	frames(wait);
+	ck_assert_int_eq(requests, 3);
+	ck_assert(controller_plan(&c, answer(PLAN_MESSAGE_OK, 0.5), now));
+	ck_assert_int_eq(c.fsm.state, FSM_SHOWING);
+}
+END_TEST
+
+START_TEST(a_request_that_somebody_else_cancelled_gets_a_new_id)
+{
+	frames(MANY);
+	int64_t id = c.request.id;
+	ck_assert(controller_plan(&c, answer(PLAN_MESSAGE_CANCELLED, 0), now));
+	ck_assert_int_eq(c.fsm.state, FSM_PLANNING);
+	frames((int)(config.infinity.plan_timeout * 30) + 5);
+	ck_assert(requests == 2 && c.request.id > id);
+}
+END_TEST
+
+START_TEST(late_and_foreign_answers_are_ignored)
+{
+	ck_assert(!controller_plan(&c, answer(PLAN_MESSAGE_OK, 0.5), now));	/* nothing was asked: id 0 */
+	frames(MANY);
+	billiard_plan_t *plan = answer(PLAN_MESSAGE_OK, 0.5);
+	plan->request_id--;
+	ck_assert(!controller_plan(&c, plan, now));
+	plan = answer(PLAN_MESSAGE_OK, NAN);
+	ck_assert(!controller_plan(&c, plan, now));
+	ck_assert(c.fsm.state == FSM_PLANNING && !c.has_plan && c.proposals == 0);
+}
+END_TEST
+
+START_TEST(doubled_and_late_frames_are_ignored)
+{
+	frames(MANY);
+	struct controller *before = malloc(sizeof *before);
+	ck_assert_ptr_nonnull(before);
+	*before = c;
+	ck_assert(!controller_state(&c, &state, now));
+	state.utime -= 10 * FRAME_US;
+	ck_assert(!controller_state(&c, &state, now));
+	ck_assert_int_eq(memcmp(&c, before, sizeof c), 0);
+	free(before);
+}
+END_TEST
+
+START_TEST(malformed_frames_change_nothing)
+{
+	frames(MANY);
+	struct controller *before = malloc(sizeof *before);
+	billiard_table_state_t good = state;
+	ck_assert_ptr_nonnull(before);
+	*before = c;
+#define BAD(field, value) \
+	(state = good, state.utime += FRAME_US, state.field = (value), ck_assert_msg(!controller_state(&c, &state, now), #field " = " #value))
+	BAD(ball_count, -1);
+	BAD(ball_count, 23);
+	BAD(ball_count, INT32_MAX);
+	BAD(ball_count, INT32_MIN);
+	BAD(balls[1].x, NAN);
+	BAD(balls[1].y, INFINITY);
+	BAD(balls[1].x, 1e300);
+	BAD(balls[1].colour, 9);
+	BAD(balls[1].colour, -1);
+	BAD(balls[1].phase, 77);
+	BAD(utime, -1);
+	BAD(utime, INT64_MIN);
+	BAD(utime, INT64_MAX);
+	ck_assert_int_eq(memcmp(&c, before, sizeof c), 0);
+	free(before);
+}
+END_TEST
+
+START_TEST(a_clock_that_was_set_back_does_not_stop_it)
+{
+	proposed();
+	int64_t id = c.request.id;
+	state.utime = 5;	/* or another recording */
+	frames(3);
+	shot();
+	frames(MANY);
+	ck_assert(c.fsm.state == FSM_PLANNING && c.request.id > id);
+}
+END_TEST
+
+START_TEST(lost_calibration_clears_and_says_why)
+{
+	proposed();
+	state.calibration = 0;
+	state.ball_count = 0;
+	bus_set_text(state.reason, sizeof state.reason, "2 of 4 markers");
+	frames(10);
+	ck_assert_int_eq(c.fsm.state, FSM_BLIND);
+	ck_assert_str_eq(c.drawn_note, "not calibrated: 2 of 4 markers");
+	ck_assert(c.draw.plan_id == 0 && draw_check(&c.draw));
+	bus_set_text(state.reason, sizeof state.reason, "no markers");
+	frames(1);
+	ck_assert_str_eq(c.drawn_note, "not calibrated: no markers");
+	int64_t before = draws;
+	frames(10);
+	ck_assert_int_eq(draws, before);
+	setup();
+	frames(MANY);
+	ck_assert_int_eq(c.fsm.state, FSM_PLANNING);
+}
+END_TEST
+
+START_TEST(a_hand_that_passes_changes_nothing)
+{
+	proposed();
+	int64_t before = draws;
+	state.occluded = 1;
+	frames(MANY);
+	state.occluded = 0;
+	frames(MANY);
+	ck_assert(c.fsm.state == FSM_SHOWING && draws == before && requests == 1);
+}
+END_TEST
+
+START_TEST(a_ball_taken_away_asks_anew)
+{
+	proposed();
+	state.ball_count = 3;
+	frames(MANY);
+	ck_assert(c.fsm.state == FSM_PLANNING && requests == 2 && c.request.ball_count == 3);
+}
+END_TEST
+
+START_TEST(a_false_white_is_left_out)
+{
+	frames(3);
+	place(4, COLOUR_WHITE, 0.7, 0.3);
+	state.ball_count = 5;
+	frames(MANY);
+	ck_assert_int_eq(c.request.ball_count, 4);
+	ck_assert_double_eq(c.request.balls[0].x, -0.3);
+}
+END_TEST
+
+START_TEST(overlaps_of_a_camera_are_settled_in_the_request)
+{
+	place(1, COLOUR_RED, 0.3, 0.2);
+	place(2, COLOUR_RED, 0.3 + 0.0523 - 0.001, 0.2);
+	frames(MANY);
+	struct plan_request r;
+	char err[96];
+	ck_assert_msg(plan_request_from_message(&r, &c.request, &config.table, err, sizeof err) == 0, "%s", err);
+	/* Nothing moved on the table: no new request. */
+	ck_assert(controller_plan(&c, answer(PLAN_MESSAGE_OK, 0.5), now));
+	frames(MANY);
+	ck_assert_int_eq(requests, 1);
+}
+END_TEST
+
+/* ---- commands ------------------------------------------------------------------------------------------------------- */
+
+START_TEST(pause_and_resume)
+{
+	proposed();
+	ck_assert(command("pause", ""));
+	ck_assert(c.fsm.state == FSM_PAUSED && c.draw.plan_id == 0);
+	frames(MANY);
+	ck_assert_int_eq(requests, 1);
+	ck_assert(command("resume", ""));
+	frames(MANY);
+	ck_assert(c.fsm.state == FSM_PLANNING && requests == 2);
+	ck_assert(command("infinity", ""));
+	ck_assert(c.fsm.state == FSM_PAUSED && cancels == 1);
+}
+END_TEST
+
+START_TEST(next_and_previous_go_round)
+{
+	proposed();
+	ck_assert_int_eq(c.animation.keyframe_count, 1);
+	double first = c.animation.keyframes[0].vx;
+	command("next", "");
+	ck_assert_int_eq(c.entry, 1);
+	ck_assert_double_ne(c.animation.keyframes[0].vx, first);
+	command("next", "");
+	ck_assert_int_eq(c.entry, 0);
+	command("previous", "");
+	ck_assert_int_eq(c.entry, 1);
+}
+END_TEST
+
+START_TEST(the_animation_stops_seeks_and_restarts)
+{
+	proposed();
+	now += 0.5;
+	command("animation-stop", "");
+	ck_assert_int_eq(c.animation.run, 0);
+	ck_assert_double_eq_tol(c.animation.position, 0.5 * config.infinity.animation_rate, 1e-9);
+	command("animation-seek", "1");
+	ck_assert_double_eq_tol(c.animation.position, 1.5, 1e-9);
+	command("animation-seek", "1000000");
+	ck_assert_double_eq(c.animation.position, 2);
+	command("animation-seek", "-99");
+	ck_assert_double_eq(c.animation.position, 0);
+	ck_assert(!command("animation-seek", "nan") && !command("animation-seek", "") && !command("animation-nonsense", ""));
+	command("animation-stop", "");
+	now += 0.25;
+	command("animation-seek", "0.5");
+	ck_assert_double_eq_tol(c.animation.position, 0.75, 1e-9);
+	ck_assert(plan_message_animation_check(&c.animation));
+	command("animation-restart", "");
+	ck_assert(c.animation.position == 0 && c.animation.run);
+	command("animation", "");
+	ck_assert_int_eq(c.animation.keyframe_count, 0);
+	command("animation", "");
+	ck_assert_int_eq(c.animation.keyframe_count, 1);
+}
+END_TEST
+
+START_TEST(commands_for_others_are_left_to_them)
+{
+	proposed();
+	billiard_command_t m = {.utime = 1};
+	bus_set_text(m.name, sizeof m.name, "pause");
+	bus_set_text(m.target, sizeof m.target, "billiard-vision");
+	ck_assert(controller_command(&c, &m, now));
+	ck_assert_int_eq(c.fsm.state, FSM_SHOWING);
+	ck_assert(command("snapshot", "x.png") && command("", "") && command("cancel", "5"));
+	ck_assert_int_eq(c.fsm.state, FSM_SHOWING);
+}
+END_TEST
+
+/* ---- everything at once --------------------------------------------------------------------------------------------- */
+
+static uint64_t hash(uint64_t h, const void *data, size_t size)
+{
+	const uint8_t *p = data;
+	for (size_t i = 0; i < size; i++)
+		h = (h ^ p[i]) * 0x100000001b3u;
+	return h;
+}
+
+/* A long run with losses, repetitions, spoiled numbers, hands and commands. Never a crash, nothing invalid goes out, and the same run
+ * gives the same messages. */
+static uint64_t storm(uint64_t seed)
+{
+	static const char *const commands[] = {"pause", "resume", "next", "previous", "halo", "paths", "table", "info", "infinity", "animation",
+					       "animation-stop", "animation-restart", "cancel", "x"};
+	struct random random = {seed};
+	uint64_t h = 1469598103934665603u;
+	setup();
+	for (int i = 0; i < 4000; i++) {
+		unsigned what = (unsigned)(random_u64(&random) % 40);
+		if (what == 0)
+			command(commands[random_u64(&random) % (sizeof commands / sizeof commands[0])], "0.5");
+		else if (what == 1)
+			shot();
+		else if (what == 2)
+			controller_plan(&c, answer((int8_t)(random_u64(&random) % 6), random_in(&random, -4, 4)), now);
+		else if (what == 3)
+			state.occluded = !state.occluded;
+		else if (what == 4)
+			state.calibration = (int8_t)(random_u64(&random) % 3);
+		else if (what == 5)
+			((uint8_t *)&state.balls)[random_u64(&random) % sizeof state.balls[0]] ^= (uint8_t)random_u64(&random);
+		else if (what == 6)
+			place(0, COLOUR_WHITE, random_in(&random, -0.9, 0.9), random_in(&random, -0.4, 0.4));
+		frame();
+		ck_assert(draw_check(&c.draw));
+		ck_assert(plan_message_animation_check(&c.animation));
+		h = hash(h, &c.draw, sizeof c.draw);
+		h = hash(h, &c.animation, sizeof c.animation);
+		h = hash(h, &c.request, sizeof c.request);
+	}
+	return h;
+}
+
+START_TEST(storms_are_survived_and_repeatable)
+{
+	struct random random = random_begin("controller storm");
+	for (int i = 0; i < 3; i++) {
+		uint64_t seed = random_u64(&random);
+		ck_assert_uint_eq(storm(seed), storm(seed));
+		/* Afterwards a calm table gets its proposal. */
+		billiard_table_state_t spoiled = state;
+		struct controller *survivor = malloc(sizeof *survivor);
+		ck_assert_ptr_nonnull(survivor);
+		*survivor = c;
+		double then = now;
+		setup();
+		c = *survivor;
+		free(survivor);
+		state.utime = spoiled.utime;
+		now = then;
+		command("resume", "");
+		shot();
+		frames(MANY);
+		ck_assert_int_eq(c.fsm.state, FSM_PLANNING);
+	}
+}
+END_TEST
+
+Suite *test_suite(void)
+{
+	Suite *suite = suite_create("controller");
+	TCase *way = tcase_create("proposals");
+	tcase_add_checked_fixture(way, setup, NULL);
+	tcase_add_test(way, a_resting_table_is_asked_for_once);
+	tcase_add_test(way, an_answer_is_drawn_and_stays);
+	tcase_add_test(way, a_shot_takes_it_off_and_asks_anew);
+	tcase_add_test(way, motion_while_planning_cancels);
+	tcase_add_test(way, improved_answers_replace_repeated_ones_do_not);
+	tcase_add_test(way, no_plan_is_said_on_the_table);
+	suite_add_tcase(suite, way);
+	TCase *faults = tcase_create("faults");
+	tcase_add_checked_fixture(faults, setup, NULL);
+	tcase_set_timeout(faults, 60);
+	tcase_add_test(faults, a_lost_request_or_answer_is_repeated);
+	tcase_add_test(faults, a_request_that_somebody_else_cancelled_gets_a_new_id);
+	tcase_add_test(faults, late_and_foreign_answers_are_ignored);
+	tcase_add_test(faults, doubled_and_late_frames_are_ignored);
+	tcase_add_test(faults, malformed_frames_change_nothing);
+	tcase_add_test(faults, a_clock_that_was_set_back_does_not_stop_it);
+	tcase_add_test(faults, lost_calibration_clears_and_says_why);
+	tcase_add_test(faults, a_hand_that_passes_changes_nothing);
+	tcase_add_test(faults, a_ball_taken_away_asks_anew);
+	tcase_add_test(faults, a_false_white_is_left_out);
+	tcase_add_test(faults, overlaps_of_a_camera_are_settled_in_the_request);
+	tcase_add_test(faults, storms_are_survived_and_repeatable);
+	suite_add_tcase(suite, faults);
+	TCase *commands = tcase_create("commands");
+	tcase_add_checked_fixture(commands, setup, NULL);
+	tcase_add_test(commands, pause_and_resume);
+	tcase_add_test(commands, next_and_previous_go_round);
+	tcase_add_test(commands, the_animation_stops_seeks_and_restarts);
+	tcase_add_test(commands, commands_for_others_are_left_to_them);
+	suite_add_tcase(suite, commands);
+	return suite;
+}
