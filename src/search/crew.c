@@ -108,12 +108,13 @@ bool crew_wait(struct crew *crew, struct worker *worker, bool (*any)(const struc
 	return !atomic_load(&crew->over);
 }
 
-bool crew_pop(const struct crew *crew, struct frontier *open, bool *overflow, struct node *out)
+bool crew_pop(struct crew *crew, struct frontier *open, struct node *out)
 {
 	if (open->count == 0)
 		return false;
 	if (frontier_best(open) > atomic_load_explicit(&crew->limit, memory_order_relaxed)) {
-		*overflow |= open->overflow;
+		if (open->overflow)
+			atomic_store_explicit(&crew->overflow, true, memory_order_relaxed);
 		frontier_clear(open);
 		return false;
 	}
@@ -173,7 +174,7 @@ static void open_state(struct crew *crew, struct worker *worker, const struct so
 	int index = atomic_fetch_add_explicit(&crew->state_count, 1, memory_order_relaxed);
 	if (index >= STATES_MAX) {
 		atomic_store_explicit(&crew->state_count, STATES_MAX, memory_order_relaxed);
-		worker->overflow = true;
+		atomic_store_explicit(&crew->overflow, true, memory_order_relaxed);
 		return;
 	}
 	struct node root[ROOTS_MAX];
@@ -203,7 +204,8 @@ static void take_in_all(struct crew *crew, struct worker *worker, struct slot *s
 	count_up(&worker->count[COUNT_TRIED], slot->tried);
 	count_up(&worker->count[COUNT_LANDED], slot->landed);
 	count_up(&worker->count[COUNT_REFINED], slot->refined);
-	worker->overflow |= slot->overflow;
+	if (slot->overflow)
+		atomic_store_explicit(&crew->overflow, true, memory_order_relaxed);
 	for (int i = 0; i < slot->played_count; i++)
 		take_in(crew, worker, slot, &slot->played[i]);
 	double limit = atomic_load_explicit(&crew->limit, memory_order_relaxed);
@@ -246,6 +248,7 @@ static void begin(struct crew *crew)
 	atomic_store(&crew->state_count, crew->planner->state_count);
 	atomic_store(&crew->dry, 0);
 	atomic_store(&crew->over, false);
+	atomic_store(&crew->overflow, false);
 	crew->improved = crew->serve_due = crew->cut = false;
 	crew->finished = 0;
 	crew->start = now(crew->planner);
@@ -254,7 +257,7 @@ static void begin(struct crew *crew)
 		frontier_clear(&worker->open);
 		atomic_store(&worker->open_count, 0);
 		worker->found_count = 0;
-		worker->overflow = worker->asks = false;
+		worker->asks = false;
 		atomic_store(&worker->inbox_count, 0);
 		for (int k = 0; k < COUNT_KINDS; k++)
 			worker->before[k] = atomic_load(&worker->count[k]);
@@ -310,9 +313,9 @@ void crew_run(struct crew *crew, plan_progress_fn *progress, void *context, stru
 	pthread_mutex_unlock(&crew->lock);
 	pool_end(planner->pool);
 	sum_up(crew);
-	planner->overflow |= planner->frontier.overflow;
+	planner->overflow |= planner->frontier.overflow || atomic_load(&crew->overflow);
 	for (int i = 0; i < crew->worker_count; i++)
-		planner->overflow |= crew->worker[i].overflow || crew->worker[i].open.overflow;
+		planner->overflow |= crew->worker[i].open.overflow;
 }
 
 void crew_figures(const struct crew *crew, struct plan_figures *out)

@@ -23,7 +23,6 @@ struct worker {
 	struct solution found[FOUND_MAX];
 	uint8_t found_shots[FOUND_MAX];	/* which list it belongs to */
 	int found_count;
-	bool overflow;
 	double window;			/* s, when its next one begins */
 	_Atomic uint64_t count[COUNT_KINDS];	/* since the beginning, as are those below */
 	uint64_t before[COUNT_KINDS];		/* this search */
@@ -58,7 +57,7 @@ struct crew {
 	_Atomic double best;		/* cost of the best one */
 	atomic_int state_count;
 	atomic_int dry;			/* workers that have nothing to do; written under lock */
-	atomic_bool over;
+	atomic_bool over, overflow;
 
 	pthread_mutex_t lock;		/* of all below, of the results in planner and, but for stealing, of planner->frontier */
 	pthread_cond_t work, news;	/* for workers; for the manager */
@@ -91,7 +90,7 @@ bool crew_wait(struct crew *crew, struct worker *worker, bool (*any)(const struc
 /* True, and everybody knows, when the search is over. */
 bool crew_is_over(struct crew *crew);
 /* Takes the best out of a queue; false when it is empty or holds only what is not wanted any more (which is dropped). */
-bool crew_pop(const struct crew *crew, struct frontier *open, bool *overflow, struct node *out);
+bool crew_pop(struct crew *crew, struct frontier *open, struct node *out);
 
 static inline void count_up(_Atomic uint64_t *counter, uint64_t by)
 {

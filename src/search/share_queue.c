@@ -13,7 +13,7 @@ static bool take(struct crew *crew, struct worker *worker, struct node *out)
 	struct planner *planner = crew->planner;
 	bool taken = false;
 	pthread_mutex_lock(&crew->lock);
-	while (!(taken = crew_pop(crew, &planner->frontier, &planner->overflow, out)))
+	while (!(taken = crew_pop(crew, &planner->frontier, out)))
 		if (!crew_wait(crew, worker, NULL))
 			break;
 	atomic_store_explicit(&worker->open_count, planner->frontier.count / (uint32_t)crew->worker_count, memory_order_relaxed);

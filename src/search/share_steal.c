@@ -18,22 +18,22 @@ static void begin(struct crew *crew)
 static bool pop(struct crew *crew, struct worker *from, struct node *out)
 {
 	pthread_mutex_lock(&from->queue_lock);
-	bool taken = crew_pop(crew, &from->open, &from->overflow, out);
+	bool taken = crew_pop(crew, &from->open, out);
 	atomic_store(&from->open_count, from->open.count);
 	pthread_mutex_unlock(&from->queue_lock);
 	return taken;
 }
 
 /* Every second one of the victim's best, half of them at most: both go on with good ones. */
-static int rob(const struct crew *crew, struct worker *victim, struct node loot[STEAL_MAX])
+static int rob(struct crew *crew, struct worker *victim, struct node loot[STEAL_MAX])
 {
 	struct node kept[STEAL_MAX];
 	int taken = 0, kept_count = 0;
 	pthread_mutex_lock(&victim->queue_lock);
 	int want = (int)(victim->open.count + 1) / 2;
-	while (taken < want && taken < STEAL_MAX && crew_pop(crew, &victim->open, &victim->overflow, &loot[taken])) {
+	while (taken < want && taken < STEAL_MAX && crew_pop(crew, &victim->open, &loot[taken])) {
 		taken++;
-		if (taken < want && taken < STEAL_MAX && crew_pop(crew, &victim->open, &victim->overflow, &kept[kept_count]))
+		if (taken < want && taken < STEAL_MAX && crew_pop(crew, &victim->open, &kept[kept_count]))
 			kept_count++;
 	}
 	for (int i = 0; i < kept_count; i++)

@@ -47,9 +47,9 @@ static void hand_over(struct crew *crew, struct worker *worker, int want, bool a
 	struct node node, kept[HAND_OVER_MAX];
 	int kept_count = 0;
 	crew_report(crew, worker);
-	for (int i = 0; i < want && crew_pop(crew, &worker->open, &worker->overflow, &node); i++) {
+	for (int i = 0; i < want && crew_pop(crew, &worker->open, &node); i++) {
 		frontier_push(all, &node);
-		if (alternate && crew_pop(crew, &worker->open, &worker->overflow, &kept[kept_count]))
+		if (alternate && crew_pop(crew, &worker->open, &kept[kept_count]))
 			kept_count++;
 	}
 	for (int i = 0; i < kept_count; i++)
@@ -170,7 +170,7 @@ static bool take(struct crew *crew, struct worker *worker, struct node *out)
 			pthread_mutex_unlock(&crew->lock);
 		}
 		atomic_store_explicit(&worker->open_count, worker->open.count, memory_order_relaxed);
-		if (crew_pop(crew, &worker->open, &worker->overflow, out))
+		if (crew_pop(crew, &worker->open, out))
 			return true;
 		if (!ask(crew, worker))
 			return false;
@@ -196,7 +196,7 @@ static void serve(struct crew *crew)
 		if (crew->serve_all || crew->worker[i].asks)
 			request[count++] = &crew->worker[i];
 	crew->serve_all = false;
-	while (count > 0 && crew_pop(crew, all, &crew->planner->overflow, &node)) {
+	while (count > 0 && crew_pop(crew, all, &node)) {
 		struct worker *worker = request[at];
 		int place = atomic_load(&worker->inbox_count);
 		worker->inbox[place] = node;
