@@ -4,6 +4,8 @@
 #include <stdio.h>
 #include <string.h>
 
+#include "vision/marker_edges.h"
+
 enum { AVERAGED_MAX = 50, FULL_SEARCH_EVERY = 5 };
 static const double BUMP_PX = 1.5;	/* at 1280 px: corners further off than this were moved, not noisy */
 
@@ -26,14 +28,15 @@ void calibration_reset(struct calibration *c)
 	c->seen_count = c->averaged = c->now_count = c->partial = 0;
 }
 
-/* Markers that do not belong to the layout are somebody else's. */
-static int keep_known(const struct marker_layout *layout, struct marker_view *view, int count)
+/* Markers that do not belong to the layout are somebody else's; the others' corners are refined. */
+static int keep_known(const struct marker_layout *layout, const struct image *frame, struct marker_view *view, int count)
 {
 	int kept = 0;
 	for (int i = 0; i < count; i++)
 		for (int k = 0; k < layout->count; k++)
 			if (view[i].id == layout->marker[k].id) {
-				view[kept++] = view[i];
+				view[kept] = view[i];
+				marker_refine(frame, layout->dictionary_bits + 2, &view[kept++]);
 				break;
 			}
 	return kept;
@@ -61,7 +64,7 @@ bool calibration_single(struct calibration *c, const struct image *frame, const 
 			char *reason, size_t reason_size)
 {
 	struct marker_view view[MARKER_MAX];
-	int count = keep_known(c->layout, view, marker_find(c->finder, frame, view, MARKER_MAX));
+	int count = keep_known(c->layout, frame, view, marker_find(c->finder, frame, view, MARKER_MAX));
 	calibration_reset(c);
 	c->now_count = count;
 	if (!find_pose(c, view, count, in, reason, reason_size))
@@ -116,11 +119,11 @@ static void average(struct calibration *c, const struct marker_view *view, int c
 static int search(struct calibration *c, const struct image *frame, struct marker_view view[MARKER_MAX])
 {
 	int count = marker_find_near(c->finder, frame, c->seen, c->seen_count, view, MARKER_MAX);
-	count = keep_known(c->layout, view, count);
+	count = keep_known(c->layout, frame, view, count);
 	c->partial = count < c->seen_count ? c->partial + 1 : 0;
 	/* Not where they were: covered, or the camera looks elsewhere. The whole frame is dear, so not every time. */
 	if (count < 3 && c->partial % FULL_SEARCH_EVERY == 1)
-		count = keep_known(c->layout, view, marker_find(c->finder, frame, view, MARKER_MAX));
+		count = keep_known(c->layout, frame, view, marker_find(c->finder, frame, view, MARKER_MAX));
 	return count;
 }
 
