@@ -15,27 +15,35 @@ enum { CASCADE_MAX = 400 };
 /* The thesis' topspin adds speed at each contact: in a cascade of one instant it counts for this many contacts only. */
 enum { TOPSPIN_MAX = 32 };
 
+/* Balls whose contact with this one is due. */
+static uint32_t due_partners(const struct sim *sim, int ball, double limit)
+{
+	uint32_t partners = 0;
+	for (int i = 0; i < ball; i++)
+		partners |= (uint32_t)(queue_pair(&sim->queue, i, ball) <= limit) << i;
+	for (int i = ball + 1; i < sim->ball_count; i++)
+		partners |= (uint32_t)(queue_pair(&sim->queue, ball, i) <= limit) << i;
+	return partners;
+}
+
 void collide_collect(const struct sim *sim, const struct event *first, struct group *group)
 {
 	double limit = first->time + SAME_INSTANT;
-	group->count = 0;
-	group->contact[group->count++] = *first;
+	uint32_t partners[BALL_MAX], done = 0;
 	group->balls = 1u << first->ball | 1u << first->other;
-	for (uint32_t before = 0; before != group->balls;) {
-		before = group->balls;
-		group->count = 0;
-		for (int high = 1; high < sim->ball_count; high++) {
-			if (sim->queue.row_time[high] > limit)
-				continue;
-			for (int low = 0; low < high && group->count < GROUP_MAX; low++) {
-				uint32_t pair = 1u << low | 1u << high;
-				if (queue_pair(&sim->queue, low, high) > limit || !(group->balls & pair))
-					continue;
-				group->balls |= pair;
-				group->contact[group->count++] =
-					(struct event){first->time, EVENT_BALL_BALL, (int16_t)low, (int16_t)high};
-			}
-		}
+	while (done != group->balls) {
+		int ball = __builtin_ctz(group->balls & ~done);
+		partners[ball] = due_partners(sim, ball, limit);
+		group->balls |= partners[ball];
+		done |= 1u << ball;
+	}
+	group->count = 0;
+	for (uint32_t low = group->balls; low; low &= low - 1) {
+		int a = __builtin_ctz(low);
+		uint32_t higher = partners[a] & ~((2u << a) - 1);
+		for (; higher && group->count < GROUP_MAX; higher &= higher - 1)
+			group->contact[group->count++] =
+				(struct event){first->time, EVENT_BALL_BALL, (int16_t)a, (int16_t)__builtin_ctz(higher)};
 	}
 }
 

@@ -120,7 +120,8 @@ static void count_instant(struct sim *sim)
 	sim->instant_contacts++;
 }
 
-static void resolve_balls(struct sim *sim, const struct event *event)
+/* Reports the first contact of the group now, the others one by one after it. */
+static void resolve_balls(struct sim *sim, struct event *event)
 {
 	struct group group;
 	collide_collect(sim, event, &group);
@@ -131,7 +132,7 @@ static void resolve_balls(struct sim *sim, const struct event *event)
 	count_instant(sim);
 	collide_balls(sim, &group);
 	renew(sim, group.balls);
-	sim->pending_count = sim->pending_next = 0;
+	*event = group.contact[0];
 	for (int i = 1; i < group.count; i++)
 		sim->pending[sim->pending_count++] = group.contact[i];
 }
@@ -173,8 +174,7 @@ bool sim_step(struct sim *sim, struct event *event)
 		event->time = sim->time;
 	sim->time = event->time;
 	if (event->kind == EVENT_BALL_BALL) {
-		struct event first = *event;
-		resolve_balls(sim, &first);
+		resolve_balls(sim, event);
 	} else {
 		resolve_own(sim, event);
 	}

@@ -1,0 +1,160 @@
+#include "harness.h"
+#include "scenes.h"
+
+#include <errno.h>
+#include <math.h>
+#include <string.h>
+
+#include "physics/table.h"
+
+static vec2 nearest_pocket(const struct table *t, vec2 point)
+{
+	vec2 best = t->pocket[0].centre;
+	for (int i = 1; i < t->pocket_count; i++) {
+		if (vec2_dist(t->pocket[i].centre, point) < vec2_dist(best, point))
+			best = t->pocket[i].centre;
+	}
+	return best;
+}
+
+/* Rails face the bed, jaws the mouth of their pocket. */
+START_TEST(normals_point_to_the_playing_side)
+{
+	struct table table[2] = {scene_thesis_table(), scene_snooker_table()};
+	for (int k = 0; k < 2; k++) {
+		for (int i = 0; i < table[k].cushion_count; i++) {
+			const struct cushion *c = &table[k].cushion[i];
+			ck_assert_double_eq_tol(vec2_norm(c->normal), 1, 1e-15);
+			ck_assert_double_eq_tol(vec2_dot(c->normal, c->along), 0, 1e-15);
+			if (c->main_rail)
+				ck_assert_double_gt(vec2_dot(c->normal, vec2_scale(c->a, -1)), 0);
+			else
+				ck_assert_double_gt(vec2_dot(c->normal, vec2_sub(nearest_pocket(&table[k], c->a), c->a)), 0);
+			ck_assert_double_le(vec2_dist(vec2_madd(c->a, c->span, c->along), c->b), 1e-15);
+		}
+	}
+}
+END_TEST
+
+/* Every cushion end is covered by a jaw; finishing twice adds nothing. */
+START_TEST(free_ends_get_tips)
+{
+	struct table table[3] = {scene_thesis_table(), scene_snooker_table(), scene_box_table(2, 1)};
+	for (int k = 0; k < 3; k++) {
+		struct table *t = &table[k];
+		for (int i = 0; i < 2 * t->cushion_count; i++) {
+			vec2 end = i & 1 ? t->cushion[i / 2].b : t->cushion[i / 2].a;
+			bool covered = false;
+			for (int j = 0; j < t->jaw_count; j++)
+				covered = covered || fabs(vec2_dist(end, t->jaw[j].centre) - t->jaw[j].radius) < 1e-3;
+			ck_assert(covered);
+		}
+		int jaws = t->jaw_count;
+		char err[100];
+		ck_assert_int_eq(table_finish(t, err, sizeof err), 0);
+		ck_assert_int_eq(t->jaw_count, jaws);
+	}
+	ck_assert_int_eq(table[2].jaw_count, 4);
+}
+END_TEST
+
+START_TEST(regions_hold_what_is_near)
+{
+	struct table t = scene_snooker_table();
+	uint32_t jaws = 0, cushions = 0, pockets = 0;
+	for (int i = 0; i < t.region_count; i++) {
+		ck_assert_int_eq((int)(jaws & t.region[i].jaws), 0);
+		jaws |= t.region[i].jaws;
+		cushions |= t.region[i].cushions;
+		pockets |= t.region[i].pockets;
+		/* the middle of the table is far from every pocket */
+		ck_assert(t.region[i].low.x > 0.4 || t.region[i].high.x < -0.4 || t.region[i].low.y > 0.4 ||
+			  t.region[i].high.y < -0.4);
+	}
+	ck_assert_int_eq((int)jaws, (int)((1ull << t.jaw_count) - 1));
+	ck_assert_int_eq((int)pockets, 63);
+	for (int i = 0; i < t.cushion_count; i++)
+		ck_assert((cushions >> i & 1) == !t.cushion[i].main_rail);
+}
+END_TEST
+
+START_TEST(bad_tables_are_refused)
+{
+	char err[200];
+	struct table t = scene_thesis_table();
+	t.ball_radius = NAN;
+	ck_assert_int_eq(table_finish(&t, err, sizeof err), -EINVAL);
+	ck_assert_ptr_nonnull(strstr(err, "radius"));
+	t = scene_thesis_table();
+	t.material.e_cushion = 1.1;
+	ck_assert_int_eq(table_finish(&t, err, sizeof err), -EINVAL);
+	ck_assert_ptr_nonnull(strstr(err, "e_cushion"));
+	t = scene_thesis_table();
+	t.cushion[3].b = t.cushion[3].a;
+	ck_assert_int_eq(table_finish(&t, err, sizeof err), -EINVAL);
+	ck_assert_ptr_nonnull(strstr(err, "cushion 3"));
+	t = scene_thesis_table();
+	t.cushion[0].a = (vec2){-1, 0};
+	t.cushion[0].b = (vec2){1, 0};
+	ck_assert_int_eq(table_finish(&t, err, sizeof err), -EINVAL);
+	t.cushion[0].two_sided = true;
+	ck_assert_int_eq(table_finish(&t, err, sizeof err), 0);
+	t = scene_thesis_table();
+	t.pocket_count = 7;
+	ck_assert_int_eq(table_finish(&t, err, sizeof err), -EINVAL);
+	t = scene_thesis_table();
+	t.pocket[2].centre.y = INFINITY;
+	ck_assert_int_eq(table_finish(&t, NULL, 0), -EINVAL);
+}
+END_TEST
+
+START_TEST(pockets_by_name)
+{
+	struct table t = scene_thesis_table();
+	for (int i = 0; i < t.pocket_count; i++)
+		ck_assert_int_eq(table_pocket(&t, t.pocket[i].name), i);
+	ck_assert_int_eq(table_pocket(&t, "NOWHERE"), -1);
+	ck_assert_int_eq(table_pocket(&t, ""), -1);
+}
+END_TEST
+
+START_TEST(bad_positions_are_refused)
+{
+	struct table t = scene_thesis_table();
+	struct ball ball[3] = {ball_at(COLOUR_WHITE, (vec2){0, 0}), ball_at(COLOUR_RED, (vec2){0.0523, 0}),
+			       ball_at(COLOUR_RED, (vec2){0.3, 0})};
+	int first, second;
+	char err[200];
+	ck_assert_int_eq(table_check_balls(&t, ball, 3, &first, &second, err, sizeof err), 0);
+	ck_assert(first == -1 && second == -1);
+	ball[2].pos.x = 0.06;
+	ck_assert_int_eq(table_check_balls(&t, ball, 3, &first, &second, err, sizeof err), -EINVAL);
+	ck_assert(first == 1 && second == 2);
+	ball[2].phase = BALL_POTTED;
+	ck_assert_int_eq(table_check_balls(&t, ball, 3, &first, &second, err, sizeof err), 0);
+	ball[2].phase = BALL_REST;
+	ball[2].pos = (vec2){0.95, 0};
+	ck_assert_int_eq(table_check_balls(&t, ball, 3, &first, &second, err, sizeof err), -EINVAL);
+	ck_assert(first == 2 && second == -1);
+	ball[2].pos = (vec2){0.3, NAN};
+	ck_assert_int_eq(table_check_balls(&t, ball, 3, &first, &second, err, sizeof err), -EINVAL);
+	ball[2].pos.y = 0;
+	ball[2].spin[1] = INFINITY;
+	ck_assert_int_eq(table_check_balls(&t, ball, 3, &first, &second, err, sizeof err), -EINVAL);
+	ck_assert_int_eq(first, 2);
+}
+END_TEST
+
+Suite *test_suite(void)
+{
+	Suite *suite = suite_create("table");
+	TCase *tcase = tcase_create("table");
+	tcase_add_test(tcase, normals_point_to_the_playing_side);
+	tcase_add_test(tcase, free_ends_get_tips);
+	tcase_add_test(tcase, regions_hold_what_is_near);
+	tcase_add_test(tcase, bad_tables_are_refused);
+	tcase_add_test(tcase, pockets_by_name);
+	tcase_add_test(tcase, bad_positions_are_refused);
+	suite_add_tcase(suite, tcase);
+	return suite;
+}
