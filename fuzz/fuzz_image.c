@@ -22,6 +22,6 @@ int LLVMFuzzerTestOneInput(const uint8_t *data, size_t size)
 	for (int y = 0; y < image->height; y++)
 		for (int x = 0; x < 3 * image->width; x++)
 			sum += image->data[y * image->stride + x];
-	__asm__ volatile("" : : "r"(sum));	/* keeps the reads */
+	__asm__ volatile("" : : "r"(sum)); /* keeps the reads */
 	return 0;
 }

@@ -11,7 +11,8 @@ static void box(struct table *table)
 {
 	char err[160];
 	*table = (struct table){.length = 1.881, .width = 0.943, .ball_radius = 0.02615, .ball_mass = 0.14};
-	table->material = (struct material){.gravity = 9.8, .mu_slide = 0.17, .mu_roll = 0.014, .mu_spin = 3e-4, .e_ball = 0.95, .e_cushion = 0.85};
+	table->material = (struct material){
+		.gravity = 9.8, .mu_slide = 0.17, .mu_roll = 0.014, .mu_spin = 3e-4, .e_ball = 0.95, .e_cushion = 0.85};
 	if (table_finish(table, err, sizeof err) < 0)
 		abort();
 }

@@ -32,7 +32,7 @@ static int heard(int (*run)(void *context), void *context)
 	return status;
 }
 
-/* ---- numbers -------------------------------------------------------------------------------------------------------- */
+/* ---- numbers ----------------------------------------------------------------------------------------------------- */
 
 struct number {
 	const char *text;
@@ -54,7 +54,8 @@ START_TEST(numbers)
 		ck_assert_double_eq(number.value, good[i].value);
 		ck_assert_str_eq(said, "");
 	}
-	const char *const bad[] = {"", "x", "1x", " 1", "1 ", "nan", "inf", "-inf", "0x10", "1e999", "-10.001", "20001", "1,5", "--", "."};
+	const char *const bad[] = {"",	   "x",	    "1x",      " 1",	"1 ",  "nan", "inf", "-inf",
+				   "0x10", "1e999", "-10.001", "20001", "1,5", "--",  "."};
 	for (size_t i = 0; i < sizeof bad / sizeof *bad; i++) {
 		struct number number = {bad[i], 77};
 		ck_assert_msg(heard(take_number, &number) == CMD_BAD_INPUT, "\"%s\" was taken", bad[i]);
@@ -82,7 +83,8 @@ START_TEST(whole_numbers)
 	struct whole good = {"4", 0};
 	ck_assert_int_eq(heard(take_whole, &good), CMD_OK);
 	ck_assert_int_eq(good.value, 4);
-	const char *const bad[] = {"", "0", "5", "1.0", "1e0", "two", "4294967297", "99999999999999999999", "0x1", "3 "};
+	const char *const bad[] = {"",	  "0", "5", "1.0", "1e0", "two", "4294967297", "99999999999999999999",
+				   "0x1", "3 "};
 	for (size_t i = 0; i < sizeof bad / sizeof *bad; i++) {
 		struct whole whole = {bad[i], 77};
 		ck_assert_msg(heard(take_whole, &whole) == CMD_BAD_INPUT, "\"%s\" was taken", bad[i]);
@@ -92,7 +94,7 @@ START_TEST(whole_numbers)
 }
 END_TEST
 
-/* ---- JSON and configuration ----------------------------------------------------------------------------------------- */
+/* ---- JSON and configuration -------------------------------------------------------------------------------------- */
 
 static int print(void *context)
 {

@@ -10,11 +10,11 @@
 #include "app/text_file.h"
 #include "harness.h"
 
-#define THESIS "config/thesis-table.conf"
+#define THESIS	"config/thesis-table.conf"
 #define SNOOKER "config/snooker-12ft.conf"
 
 enum { TEXT_MAX = 1 << 16, ERR_SIZE = 640 };
-static struct config config;	/* too large for the stack */
+static struct config config; /* too large for the stack */
 
 static char *shipped(const char *path)
 {
@@ -62,7 +62,7 @@ static void load(const char *path)
 	ck_assert_msg(config_load(&config, path, err, sizeof err) == 0, "%s", err);
 }
 
-/* ---- the shipped files ---------------------------------------------------------------------------------------------- */
+/* ---- the shipped files ------------------------------------------------------------------------------------------- */
 
 static void check_near(double value, double wanted)
 {
@@ -113,7 +113,8 @@ START_TEST(snooker_table_by_the_rules)
 }
 END_TEST
 
-/* The six long noses lie on the bed's edge and face the origin; a jaw faces its pocket; each tangent jaw begins where its nose ends. */
+/* The six long noses lie on the bed's edge and face the origin; a jaw faces its pocket; each tangent jaw begins where
+ * its nose ends. */
 static void check_geometry(const char *path)
 {
 	load(path);
@@ -150,7 +151,8 @@ START_TEST(jaws_of_the_big_table_leave_room)
 		for (int j = 0; j < i; j++) {
 			if (t->jaw[i].radius == 0 || t->jaw[j].radius == 0)
 				continue;
-			double gap = vec2_dist(t->jaw[i].centre, t->jaw[j].centre) - t->jaw[i].radius - t->jaw[j].radius;
+			double gap =
+				vec2_dist(t->jaw[i].centre, t->jaw[j].centre) - t->jaw[i].radius - t->jaw[j].radius;
 			ck_assert_double_gt(gap, 0.085);
 		}
 }
@@ -177,7 +179,8 @@ static void check_projector(const char *path)
 			double w = h[6] * x + h[7] * y + h[8];
 			double px = (h[0] * x + h[1] * y + h[2]) / w, py = (h[3] * x + h[4] * y + h[5]) / w;
 			ck_assert(px > 0 && px < config.projector.width && py > 0 && py < config.projector.height);
-			ck_assert((px > config.projector.width / 2) == (sx > 0) && (py < config.projector.height / 2) == (sy > 0));
+			ck_assert((px > config.projector.width / 2) == (sx > 0) &&
+				  (py < config.projector.height / 2) == (sy > 0));
 		}
 }
 
@@ -188,16 +191,17 @@ START_TEST(projector_shows_the_table)
 }
 END_TEST
 
-/* ---- errors --------------------------------------------------------------------------------------------------------- */
+/* ---- errors ------------------------------------------------------------------------------------------------------ */
 
 static const struct {
-	const char *from, *to, *message;	/* found and allowed */
+	const char *from, *to, *message; /* found and allowed */
 } bad[] = {
 	{"mu_roll = 0.0142435", "mu_roll = 2.5", "material.mu_roll: found 2.5, allowed a number 0.001 to 0.1"},
 	{"mu_roll = 0.0142435", "mu_roll = 1e999", "material.mu_roll: found inf, allowed a number 0.001 to 0.1"},
 	{"mu_roll = 0.0142435", "mu_roll = \"x\"", "material.mu_roll: found \"x\", allowed a number 0.001 to 0.1"},
 	{"mu_roll = 0.0142435", "mu_roll = true", "material.mu_roll: found true, allowed a number 0.001 to 0.1"},
-	{"mu_roll = 0.0142435", "mu_roll = ( 1, 2 )", "material.mu_roll: found a list of 2, allowed a number 0.001 to 0.1"},
+	{"mu_roll = 0.0142435", "mu_roll = ( 1, 2 )",
+	 "material.mu_roll: found a list of 2, allowed a number 0.001 to 0.1"},
 	{"mu_roll =", "mu_rol =", "material.mu_rol: found an unknown key, allowed one of gravity mu_slide mu_roll"},
 	{"gravity = 9800.0", "gravity = 9.8", "material.gravity: found 9.8, allowed a number 1000 to 20000 mm/s^2"},
 	{"workers = 0", "workers = 0.5", "planner.workers: found 0.5, allowed a whole number 0 to 16"},
@@ -205,11 +209,14 @@ static const struct {
 	{"seed = 1;", "seed = -1;", "virtual_table.seed: found -1, allowed a whole number 0 to"},
 	{"fullscreen = true", "fullscreen = 1", "projector.fullscreen: found 1, allowed true or false"},
 	{"name = \"thesis-table\"", "name = \"\"", "name: found \"\", allowed a text of 1 to 31 characters"},
-	{"from = ( -55.0, 471.5 )", "from = ( -55.0 )", "table.cushions[2].from: found a list of 1, allowed 2 numbers -5000 to 5000 mm"},
-	{"from = ( -55.0, 471.5 )", "from = ( -55.0, 9999.0 )", "table.cushions[2].from[1]: found 9999.0, allowed 2 numbers"},
+	{"from = ( -55.0, 471.5 )", "from = ( -55.0 )",
+	 "table.cushions[2].from: found a list of 1, allowed 2 numbers -5000 to 5000 mm"},
+	{"from = ( -55.0, 471.5 )", "from = ( -55.0, 9999.0 )",
+	 "table.cushions[2].from[1]: found 9999.0, allowed 2 numbers"},
 	{"jaws = ()", "jaws = 3", "table.jaws: found 3, allowed a list ( ) of 0 to 32 groups"},
 	{"jaws = ()", "jaws = ( 3 )", "table.jaws[0]: found 3, allowed a group { }"},
-	{"model = \"thesis\"", "model = \"thesi\"", "model: found \"thesi\", allowed thesis, simple, simple-elastic, real or real-mathavan"},
+	{"model = \"thesis\"", "model = \"thesi\"",
+	 "model: found \"thesi\", allowed thesis, simple, simple-elastic, real or real-mathavan"},
 	{"profile = \"thesis\"", "profile = \"pro\"", "profile: found \"pro\", allowed a name from profiles"},
 	{"id = 3", "id = 1", "markers.list[3].id: found 1, allowed each id once"},
 	{"id = 3", "id = 4", "markers.list[3].id: found 4, allowed each id once and below dictionary_count"},
@@ -226,7 +233,8 @@ START_TEST(error_names_place_and_range)
 	*before = config;
 	ck_assert_int_eq(load_text(text, strlen(text), &config, path, err), -EINVAL);
 	ck_assert_msg(memcmp(before, &config, sizeof config) == 0, "config was touched");
-	int line = strncmp(bad[_i].message, "table: ", 7) == 0 ? line_of(good, "table = {") : line_of(good, bad[_i].from);
+	int line =
+		strncmp(bad[_i].message, "table: ", 7) == 0 ? line_of(good, "table = {") : line_of(good, bad[_i].from);
 	snprintf(wanted, sizeof wanted, "%s:%d: %s", path, line, bad[_i].message);
 	ck_assert_msg(strncmp(err, wanted, strlen(wanted)) == 0, "\n   got %s\nwanted %s", err, wanted);
 	free(before);
@@ -244,12 +252,13 @@ static void check_missing(const char *path)
 		char key[40];
 		int after = 0;
 		const char *semicolon = memchr(line, ';', (size_t)(end - line));
-		if (sscanf(line, " %39[a-z_0-9] =%n", key, &after) != 1 || !after || !semicolon || memchr(line, '#', (size_t)(semicolon - line)))
+		if (sscanf(line, " %39[a-z_0-9] =%n", key, &after) != 1 || !after || !semicolon ||
+		    memchr(line, '#', (size_t)(semicolon - line)))
 			continue;
 		char *text = malloc(strlen(good) + 1), file[64], err[ERR_SIZE];
 		sprintf(text, "%.*s%s", (int)(line - good), good, end);
 		ck_assert_msg(load_text(text, strlen(text), &config, file, err) == -EINVAL, "without %s", key);
-		*end = 0;	/* a line may hold several keys: any of them may be named */
+		*end = 0; /* a line may hold several keys: any of them may be named */
 		char *named = strstr(err, ": found nothing"), *dot = named;
 		ck_assert_msg(named != NULL, "without %s: %s", key, err);
 		while (dot[-1] != '.' && dot[-1] != ' ')
@@ -318,7 +327,8 @@ START_TEST(damaged_files)
 		if (load_text(text, size, &config, path, err) < 0)
 			ck_assert_msg(strncmp(err, path, strlen(path)) == 0, "%s", err);
 		else
-			ck_assert(config.table.ball_radius >= 0.01 && config.table.ball_radius <= 0.04 && config.table.cushion_count >= 4);
+			ck_assert(config.table.ball_radius >= 0.01 && config.table.ball_radius <= 0.04 &&
+				  config.table.cushion_count >= 4);
 		free(text);
 	}
 	free(good);

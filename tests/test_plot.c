@@ -30,7 +30,8 @@ static void setup(void)
 	trace_init(&trace, entry, ENTRIES);
 	sim_init(&sim, &table, &model, ball, 2);
 	sim_strike(&sim, 0, &(struct shot){.angle = 0, .speed = 2});
-	ck_assert_int_eq(sim_run(&sim, &(struct sim_limits){.max_time = INFINITY, .max_events = ENTRIES}, &trace), SIM_AT_REST);
+	ck_assert_int_eq(sim_run(&sim, &(struct sim_limits){.max_time = INFINITY, .max_events = ENTRIES}, &trace),
+			 SIM_AT_REST);
 }
 
 static char *temporary(const char *end)
@@ -56,7 +57,8 @@ static uint32_t pixel(cairo_surface_t *surface, double x, double y)
 	int width = cairo_image_surface_get_width(surface), height = cairo_image_surface_get_height(surface);
 	double scale = width / (table.length + 0.2);
 	int px = (int)(width / 2.0 + x * scale), py = (int)(height / 2.0 - y * scale);
-	const uint32_t *row = (const uint32_t *)(void *)(cairo_image_surface_get_data(surface) + py * cairo_image_surface_get_stride(surface));
+	const uint32_t *row = (const uint32_t *)(void *)(cairo_image_surface_get_data(surface) +
+							 py * cairo_image_surface_get_stride(surface));
 	return row[px] & 0xffffff;
 }
 
@@ -73,7 +75,7 @@ START_TEST(png_shows_balls_where_they_are)
 		uint32_t rgb = pixel(surface, end.pos.x, end.pos.y);
 		ck_assert_msg(i ? (rgb >> 16) > 150 && (rgb & 0xff) < 80 : rgb == 0xffffff, "ball %d is %06x", i, rgb);
 	}
-	ck_assert_uint_lt(pixel(surface, 0, 0.4915) >> 16, 60);	/* a pocket */
+	ck_assert_uint_lt(pixel(surface, 0, 0.4915) >> 16, 60); /* a pocket */
 	cairo_surface_destroy(surface);
 	unlink(path);
 }

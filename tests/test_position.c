@@ -26,7 +26,7 @@ static int parse(const char *text)
 	return position_parse(&position, &table, "p.txt", text, strlen(text), err, sizeof err);
 }
 
-/* ---- what is accepted ----------------------------------------------------------------------------------------------- */
+/* ---- what is accepted -------------------------------------------------------------------------------------------- */
 
 START_TEST(thesis_example)
 {
@@ -48,7 +48,9 @@ END_TEST
 
 START_TEST(comments_blanks_and_line_ends)
 {
-	ck_assert_msg(parse("# all\r\n\r\n  \t\r\nR ,RED,\t1.5e1 , +0 # trailing, with, commas, and, more\r\n#\nU,UNKNOWN,-200,.5") == 0, "%s", err);
+	ck_assert_msg(parse("# all\r\n\r\n  \t\r\nR ,RED,\t1.5e1 , +0 # trailing, with, commas, and, "
+			    "more\r\n#\nU,UNKNOWN,-200,.5") == 0,
+		      "%s", err);
 	ck_assert_int_eq(position.count, 2);
 	ck_assert_double_eq(position.ball[0].pos.x, 0.015);
 	ck_assert_double_eq(position.ball[1].pos.y, 0.0005);
@@ -74,7 +76,8 @@ START_TEST(random_positions_come_back)
 		for (int i = 0; i < count; i++) {
 			at[i] = (vec2){-0.9 + 0.08 * i, random_in(&random, -0.4, 0.4)};
 			char line[96];
-			snprintf(line, sizeof line, "B%d,%s,%.17g,%.17g\n", i, i ? "RED" : "WHITE", at[i].x * 1000, at[i].y * 1000);
+			snprintf(line, sizeof line, "B%d,%s,%.17g,%.17g\n", i, i ? "RED" : "WHITE", at[i].x * 1000,
+				 at[i].y * 1000);
 			strcat(text, line);
 		}
 		ck_assert_msg(parse(text) == 0, "%s", err);
@@ -85,7 +88,7 @@ START_TEST(random_positions_come_back)
 }
 END_TEST
 
-/* ---- what is refused ------------------------------------------------------------------------------------------------ */
+/* ---- what is refused --------------------------------------------------------------------------------------------- */
 
 static const struct {
 	const char *text, *message;
@@ -122,7 +125,8 @@ START_TEST(refused_with_place)
 {
 	struct position before = position;
 	ck_assert_int_eq(parse(bad[_i].text), -EINVAL);
-	ck_assert_msg(strncmp(err, bad[_i].message, strlen(bad[_i].message)) == 0, "\n   got %s\nwanted %s", err, bad[_i].message);
+	ck_assert_msg(strncmp(err, bad[_i].message, strlen(bad[_i].message)) == 0, "\n   got %s\nwanted %s", err,
+		      bad[_i].message);
 	ck_assert_msg(memcmp(&before, &position, sizeof position) == 0, "position was touched");
 }
 END_TEST
@@ -162,7 +166,8 @@ START_TEST(random_texts)
 		}
 		int first, second;
 		ck_assert_int_ge(position.count, 1);
-		ck_assert_int_eq(table_check_balls(&table, position.ball, position.count, &first, &second, err, sizeof err), 0);
+		ck_assert_int_eq(
+			table_check_balls(&table, position.ball, position.count, &first, &second, err, sizeof err), 0);
 	}
 }
 END_TEST

@@ -1,4 +1,5 @@
-/* The shipped tables under play: whatever is struck and in whichever model, every ball ends on the bed or in a pocket. */
+/* The shipped tables under play: whatever is struck and in whichever model, every ball ends on the bed or in a pocket.
+ */
 #include <math.h>
 #include <stdio.h>
 #include <string.h>
@@ -26,9 +27,11 @@ static int random_balls(struct random *random, struct ball *ball, int most)
 {
 	int count = 0, first, second;
 	char err[128];
-	double x = config.table.length / 2 - config.table.ball_radius, y = config.table.width / 2 - config.table.ball_radius;
+	double x = config.table.length / 2 - config.table.ball_radius,
+	       y = config.table.width / 2 - config.table.ball_radius;
 	for (int tries = 0; tries < 100 && count < most; tries++) {
-		ball[count] = ball_at(count ? COLOUR_RED : COLOUR_WHITE, (vec2){random_in(random, -x, x), random_in(random, -y, y)});
+		ball[count] = ball_at(count ? COLOUR_RED : COLOUR_WHITE,
+				      (vec2){random_in(random, -x, x), random_in(random, -y, y)});
 		if (table_check_balls(&config.table, ball, count + 1, &first, &second, err, sizeof err) == 0)
 			count++;
 	}
@@ -37,14 +40,16 @@ static int random_balls(struct random *random, struct ball *ball, int most)
 
 static bool on_bed(vec2 at)
 {
-	double slack = config.table.ball_radius;	/* a ball may rest in a jaw, its centre behind the nose line */
+	double slack = config.table.ball_radius; /* a ball may rest in a jaw, its centre behind the nose line */
 	return fabs(at.x) <= config.table.length / 2 + slack && fabs(at.y) <= config.table.width / 2 + slack;
 }
 
 static void play(struct random *random, const struct model *model, const struct ball *ball, int count)
 {
 	static struct sim sim;
-	struct shot shot = {.angle = random_in(random, -M_PI, M_PI), .speed = random_in(random, 0.1, 8), .side = random_in(random, -0.4, 0.4),
+	struct shot shot = {.angle = random_in(random, -M_PI, M_PI),
+			    .speed = random_in(random, 0.1, 8),
+			    .side = random_in(random, -0.4, 0.4),
 			    .follow = random_in(random, -0.4, 0.4)};
 	sim_init(&sim, &config.table, model, ball, count);
 	sim_strike(&sim, 0, &shot);
@@ -52,8 +57,9 @@ static void play(struct random *random, const struct model *model, const struct 
 	ck_assert_msg(end == SIM_AT_REST, "no end: angle %.17g speed %.17g", shot.angle, shot.speed);
 	for (int i = 0; i < count; i++) {
 		struct ball b = sim_ball(&sim, i);
-		ck_assert_msg(b.phase == BALL_POTTED || on_bed(b.pos), "ball %d left at (%.1f, %.1f) mm: cue ball (%.17g, %.17g) angle %.17g speed %.17g",
-			      i, b.pos.x * 1000, b.pos.y * 1000, ball[0].pos.x, ball[0].pos.y, shot.angle, shot.speed);
+		ck_assert_msg(b.phase == BALL_POTTED || on_bed(b.pos),
+			      "ball %d left at (%.1f, %.1f) mm: cue ball (%.17g, %.17g) angle %.17g speed %.17g", i,
+			      b.pos.x * 1000, b.pos.y * 1000, ball[0].pos.x, ball[0].pos.y, shot.angle, shot.speed);
 	}
 }
 
@@ -97,8 +103,10 @@ START_TEST(every_pocket_takes_a_ball)
 		vec2 way = vec2_sub(p->centre, ball.pos);
 		sim_init(&sim, &config.table, &model, &ball, 1);
 		sim_strike(&sim, 0, &(struct shot){.angle = atan2(way.y, way.x), .speed = 1});
-		ck_assert_int_eq(sim_run(&sim, &(struct sim_limits){.max_time = INFINITY, .max_events = EVENTS}, NULL), SIM_AT_REST);
-		ck_assert_msg(sim_ball(&sim, 0).phase == BALL_POTTED, "%s of %s takes no ball in %s", p->name, config.name, model_name[_i % MODELS]);
+		ck_assert_int_eq(sim_run(&sim, &(struct sim_limits){.max_time = INFINITY, .max_events = EVENTS}, NULL),
+				 SIM_AT_REST);
+		ck_assert_msg(sim_ball(&sim, 0).phase == BALL_POTTED, "%s of %s takes no ball in %s", p->name,
+			      config.name, model_name[_i % MODELS]);
 	}
 }
 END_TEST

@@ -54,7 +54,8 @@ int cmd_whole(const char *option, const char *text, int low, int high, int *out)
 
 int cmd_json_line(json_t *object)
 {
-	int bad = !object || json_dumpf(object, stdout, JSON_COMPACT | JSON_REAL_PRECISION(10)) < 0 || putchar('\n') == EOF;
+	int bad = !object || json_dumpf(object, stdout, JSON_COMPACT | JSON_REAL_PRECISION(10)) < 0 ||
+		  putchar('\n') == EOF;
 	json_decref(object);
 	return bad ? CMD_FAILED : CMD_OK;
 }

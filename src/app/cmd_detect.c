@@ -9,7 +9,7 @@
 #include "app/overlay.h"
 #include "vision/image_io_cv.h"
 
-static const double mm = 1000;	/* in a metre */
+static const double mm = 1000; /* in a metre */
 
 struct options {
 	const char *config, *overlay;
@@ -80,15 +80,17 @@ static int prepare(struct detector *detector, const struct options *options)
 	return CMD_OK;
 }
 
-/* ---- output --------------------------------------------------------------------------------------------------------- */
+/* ---- output ------------------------------------------------------------------------------------------------------ */
 
 static int print_json(const char *image, const struct vision_result *result, double ms)
 {
 	json_t *balls = json_array();
 	for (int i = 0; i < result->ball_count; i++) {
 		const struct vision_ball *b = &result->ball[i];
-		json_array_append_new(balls, json_pack("{s:s, s:f, s:f, s:f, s:f, s:f}", "type", ball_colour_name(b->colour), "x", b->pos.x * mm,
-						       "y", b->pos.y * mm, "px", b->px.x, "py", b->px.y, "confidence", b->confidence));
+		json_array_append_new(balls,
+				      json_pack("{s:s, s:f, s:f, s:f, s:f, s:f}", "type", ball_colour_name(b->colour),
+						"x", b->pos.x * mm, "y", b->pos.y * mm, "px", b->px.x, "py", b->px.y,
+						"confidence", b->confidence));
 	}
 	bool calibrated = result->calibration != CALIBRATION_NONE;
 	json_t *line = json_object();
@@ -110,17 +112,18 @@ static int print_table(const char *image, const struct vision_result *result, do
 	if (result->calibration == CALIBRATION_NONE)
 		printf("%s: not calibrated: %s\n", image, result->reason);
 	else
-		printf("%s: %d balls, %.1f ms, %d markers, residual %.2f px = %.2f mm%s\n", image, result->ball_count, ms, result->markers_seen,
-		       result->residual_px, result->residual * mm, result->occluded ? ", something covers the table" : "");
+		printf("%s: %d balls, %.1f ms, %d markers, residual %.2f px = %.2f mm%s\n", image, result->ball_count,
+		       ms, result->markers_seen, result->residual_px, result->residual * mm,
+		       result->occluded ? ", something covers the table" : "");
 	for (int i = 0; i < result->ball_count; i++) {
 		const struct vision_ball *b = &result->ball[i];
-		printf("  %-8s %8.1f %8.1f mm  %7.1f %7.1f px  confidence %.2f\n", ball_colour_name(b->colour), b->pos.x * mm, b->pos.y * mm,
-		       b->px.x, b->px.y, b->confidence);
+		printf("  %-8s %8.1f %8.1f mm  %7.1f %7.1f px  confidence %.2f\n", ball_colour_name(b->colour),
+		       b->pos.x * mm, b->pos.y * mm, b->px.x, b->px.y, b->confidence);
 	}
 	return ferror(stdout) ? CMD_FAILED : CMD_OK;
 }
 
-/* ---- one image ------------------------------------------------------------------------------------------------------ */
+/* ---- one image --------------------------------------------------------------------------------------------------- */
 
 static double now_ms(void)
 {

@@ -12,12 +12,12 @@
 #include "app/shot_file.h"
 #include "physics/sim.h"
 
-static const double mm = 1000;	/* in a metre */
+static const double mm = 1000; /* in a metre */
 enum { EVENT_LIMIT = 10000 };
 
 struct options {
 	const char *config, *model, *plot, *position, *shot_file;
-	double speed, angle, side, follow, elevation;	/* mm/s, degrees, shares, degrees */
+	double speed, angle, side, follow, elevation; /* mm/s, degrees, shares, degrees */
 	bool has_speed, has_angle, json;
 };
 
@@ -27,7 +27,7 @@ struct run {
 	struct position position;
 	struct sim sim;
 	struct shot shot;
-	int cue;		/* -1: nothing is struck */
+	int cue; /* -1: nothing is struck */
 };
 
 static void help(void)
@@ -48,7 +48,7 @@ static void help(void)
 	     "POSITION.txt holds \"ID, TYPE, x, y\" lines in mm (- is standard input).");
 }
 
-/* ---- command line --------------------------------------------------------------------------------------------------- */
+/* ---- command line ------------------------------------------------------------------------------------------------ */
 
 enum { OPT_MODEL = 256, OPT_SPEED, OPT_ANGLE, OPT_SIDE, OPT_FOLLOW, OPT_ELEVATION, OPT_PLOT, OPT_JSON, OPT_SHOT };
 
@@ -75,7 +75,9 @@ static int take_option(struct options *options, int c)
 		return cmd_number("--elevation", optarg, 0, 89, &options->elevation);
 	case OPT_PLOT:
 		options->plot = optarg;
-		return plot_format_known(optarg) ? CMD_OK : cmd_bad_input("--plot: \"%s\" ends neither in .svg nor in .png", optarg);
+		return plot_format_known(optarg)
+			       ? CMD_OK
+			       : cmd_bad_input("--plot: \"%s\" ends neither in .svg nor in .png", optarg);
 	case OPT_SHOT:
 		options->shot_file = optarg;
 		return CMD_OK;
@@ -91,12 +93,18 @@ static int take_option(struct options *options, int c)
 static int parse(struct options *options, int argc, char **argv)
 {
 	static const struct option table[] = {
-		{"config", required_argument, NULL, 'c'},	    {"model", required_argument, NULL, OPT_MODEL},
-		{"speed", required_argument, NULL, OPT_SPEED},	    {"angle", required_argument, NULL, OPT_ANGLE},
-		{"side", required_argument, NULL, OPT_SIDE},	    {"follow", required_argument, NULL, OPT_FOLLOW},
-		{"elevation", required_argument, NULL, OPT_ELEVATION}, {"plot", required_argument, NULL, OPT_PLOT},
-		{"json", no_argument, NULL, OPT_JSON},		    {"shot", required_argument, NULL, OPT_SHOT},
-		{"help", no_argument, NULL, 'h'},		    {NULL, 0, NULL, 0},
+		{"config", required_argument, NULL, 'c'},
+		{"model", required_argument, NULL, OPT_MODEL},
+		{"speed", required_argument, NULL, OPT_SPEED},
+		{"angle", required_argument, NULL, OPT_ANGLE},
+		{"side", required_argument, NULL, OPT_SIDE},
+		{"follow", required_argument, NULL, OPT_FOLLOW},
+		{"elevation", required_argument, NULL, OPT_ELEVATION},
+		{"plot", required_argument, NULL, OPT_PLOT},
+		{"json", no_argument, NULL, OPT_JSON},
+		{"shot", required_argument, NULL, OPT_SHOT},
+		{"help", no_argument, NULL, 'h'},
+		{NULL, 0, NULL, 0},
 	};
 	int c;
 	while ((c = getopt_long(argc, argv, "c:h", table, NULL)) != -1) {
@@ -120,7 +128,7 @@ static int parse(struct options *options, int argc, char **argv)
 	return CMD_OK;
 }
 
-/* ---- from options to a simulation ----------------------------------------------------------------------------------- */
+/* ---- from options to a simulation -------------------------------------------------------------------------------- */
 
 static int set_shot(struct run *run, const struct options *options)
 {
@@ -130,7 +138,8 @@ static int set_shot(struct run *run, const struct options *options)
 		return cmd_bad_input("%s: neither a V line nor --speed and --angle", options->position);
 	if (run->cue < 0)
 		return cmd_bad_input("%s: no cue ball to strike", options->position);
-	run->shot = (struct shot){.side = options->side, .follow = options->follow, .elevation = options->elevation * M_PI / 180};
+	run->shot = (struct shot){
+		.side = options->side, .follow = options->follow, .elevation = options->elevation * M_PI / 180};
 	if (options->has_speed) {
 		run->shot.angle = options->angle * M_PI / 180;
 		run->shot.speed = options->speed / mm;
@@ -151,7 +160,9 @@ static int prepare(struct run *run, const struct options *options)
 		return status;
 	run->model = run->config.model;
 	if (options->model && !model_from_name(options->model, &run->model))
-		return cmd_bad_input("--model: found \"%s\", allowed thesis, simple, simple-elastic, real or real-mathavan", options->model);
+		return cmd_bad_input(
+			"--model: found \"%s\", allowed thesis, simple, simple-elastic, real or real-mathavan",
+			options->model);
 	if (position_read(&run->position, &run->config.table, options->position, err, sizeof err) < 0)
 		return cmd_bad_input("%s", err);
 	return set_shot(run, options);
@@ -164,14 +175,14 @@ static void begin(struct run *run)
 		sim_strike(&run->sim, run->cue, &run->shot);
 }
 
-/* ---- output --------------------------------------------------------------------------------------------------------- */
+/* ---- output ------------------------------------------------------------------------------------------------------ */
 
 static json_t *state_json(const struct run *run, int i)
 {
 	struct ball b = sim_ball(&run->sim, i);
-	return json_pack("{s:s, s:f, s:f, s:f, s:f, s:[f,f,f], s:s}", "id", run->position.name[i], "x", b.pos.x * mm, "y", b.pos.y * mm,
-			 "vx", b.vel.x * mm, "vy", b.vel.y * mm, "w", b.spin[0], b.spin[1], b.spin[2], "phase",
-			 ball_phase_name(b.phase));
+	return json_pack("{s:s, s:f, s:f, s:f, s:f, s:[f,f,f], s:s}", "id", run->position.name[i], "x", b.pos.x * mm,
+			 "y", b.pos.y * mm, "vx", b.vel.x * mm, "vy", b.vel.y * mm, "w", b.spin[0], b.spin[1],
+			 b.spin[2], "phase", ball_phase_name(b.phase));
 }
 
 static int print_json(const struct run *run, const struct event *event)
@@ -182,7 +193,8 @@ static int print_json(const struct run *run, const struct event *event)
 		json_array_append_new(balls, json_string(run->position.name[event->other]));
 	for (int i = 0; i < run->position.count; i++)
 		json_array_append_new(state, state_json(run, i));
-	json_t *line = json_pack("{s:f, s:s, s:o}", "t", event->time, "event", event_kind_name(event->kind), "balls", balls);
+	json_t *line =
+		json_pack("{s:f, s:s, s:o}", "t", event->time, "event", event_kind_name(event->kind), "balls", balls);
 	if (event->kind == EVENT_CUSHION || event->kind == EVENT_JAW)
 		json_object_set_new(line, "cushion", json_integer(event->other));
 	if (event->kind == EVENT_POCKET)
@@ -194,8 +206,8 @@ static int print_json(const struct run *run, const struct event *event)
 static void print_ball(const struct run *run, int i, const char *partner)
 {
 	struct ball b = sim_ball(&run->sim, i);
-	printf("%-16s %9.2f %9.2f %9.1f %8.2f  %-8s %s\n", run->position.name[i], b.pos.x * mm, b.pos.y * mm, vec2_norm(b.vel) * mm,
-	       atan2(b.vel.y, b.vel.x) * 180 / M_PI, ball_phase_name(b.phase), partner);
+	printf("%-16s %9.2f %9.2f %9.1f %8.2f  %-8s %s\n", run->position.name[i], b.pos.x * mm, b.pos.y * mm,
+	       vec2_norm(b.vel) * mm, atan2(b.vel.y, b.vel.x) * 180 / M_PI, ball_phase_name(b.phase), partner);
 }
 
 static int print_row(const struct run *run, const struct event *event)
@@ -221,7 +233,8 @@ static int print_event(const struct run *run, const struct event *event, bool js
 static int print_events(struct run *run, bool json)
 {
 	if (!json)
-		printf("%9s  %-23s %-16s %9s %9s %9s %8s  %s\n", "t/s", "event", "ball", "x/mm", "y/mm", "v/(mm/s)", "angle/°", "phase");
+		printf("%9s  %-23s %-16s %9s %9s %9s %8s  %s\n", "t/s", "event", "ball", "x/mm", "y/mm", "v/(mm/s)",
+		       "angle/°", "phase");
 	begin(run);
 	int status = CMD_OK;
 	struct event event;
@@ -263,7 +276,8 @@ static int simulate_shot_file(const char *path)
 	} else {
 		int r = shot_file_run(file, EVENT_LIMIT, stdout);
 		if (r < 0)
-			fprintf(stderr, "billiard simulate: %s\n", r == -ETIME ? "stopped, too many events" : strerror(-r));
+			fprintf(stderr, "billiard simulate: %s\n",
+				r == -ETIME ? "stopped, too many events" : strerror(-r));
 		status = r < 0 ? CMD_FAILED : CMD_OK;
 	}
 	free(file);

@@ -11,7 +11,7 @@
 
 enum { CONFIG_SIZE_MAX = 1 << 20 };
 
-/* ---- what needs more than one key ----------------------------------------------------------------------------------- */
+/* ---- what needs more than one key -------------------------------------------------------------------------------- */
 
 static const config_setting_t *setting_at(const config_t *settings, const char *path)
 {
@@ -22,7 +22,7 @@ static const config_setting_t *setting_at(const config_t *settings, const char *
 static int finish_table(struct config_reader *reader, const config_t *settings, struct config_file *file)
 {
 	struct table *table = &file->config.table;
-	table->ball_radius /= 2;	/* the file holds the diameter */
+	table->ball_radius /= 2; /* the file holds the diameter */
 	for (int i = 0; i < table->cushion_count; i++)
 		table->cushion[i].nose_height = file->nose_height;
 	for (int i = 0; i < table->jaw_count; i++)
@@ -40,7 +40,8 @@ static int finish_model(struct config_reader *reader, const config_t *settings, 
 {
 	if (model_from_name(config->model_name, &config->model))
 		return 0;
-	return config_reader_fail(reader, setting_at(settings, "model"), NULL, "thesis, simple, simple-elastic, real or real-mathavan");
+	return config_reader_fail(reader, setting_at(settings, "model"), NULL,
+				  "thesis, simple, simple-elastic, real or real-mathavan");
 }
 
 static int finish_profile(struct config_reader *reader, const config_t *settings, struct config_file *file)
@@ -62,17 +63,20 @@ static int finish_markers(struct config_reader *reader, const config_t *settings
 			continue;
 		char path[40];
 		snprintf(path, sizeof path, "markers.list.[%d].id", i);
-		return config_reader_fail(reader, setting_at(settings, path), NULL, "each id once and below dictionary_count");
+		return config_reader_fail(reader, setting_at(settings, path), NULL,
+					  "each id once and below dictionary_count");
 	}
 	return 0;
 }
 
 static int finish_projector(struct config_reader *reader, const config_t *settings, const double *h)
 {
-	double det = h[0] * (h[4] * h[8] - h[5] * h[7]) - h[1] * (h[3] * h[8] - h[5] * h[6]) + h[2] * (h[3] * h[7] - h[4] * h[6]);
+	double det = h[0] * (h[4] * h[8] - h[5] * h[7]) - h[1] * (h[3] * h[8] - h[5] * h[6]) +
+		     h[2] * (h[3] * h[7] - h[4] * h[6]);
 	if (fabs(det) > 1e-9)
 		return 0;
-	return config_reader_fail(reader, setting_at(settings, "projector.homography"), "a singular matrix", "one that can be inverted");
+	return config_reader_fail(reader, setting_at(settings, "projector.homography"), "a singular matrix",
+				  "one that can be inverted");
 }
 
 /* A relative path in the file is meant from the file's own folder. */
@@ -82,9 +86,11 @@ static int finish_colours(struct config_reader *reader, const config_t *settings
 	if (config->colours[0] == '/' || !slash)
 		return 0;
 	char joined[CONFIG_PATH_MAX];
-	int n = snprintf(joined, sizeof joined, "%.*s%s", (int)(slash + 1 - reader->path), reader->path, config->colours);
+	int n = snprintf(joined, sizeof joined, "%.*s%s", (int)(slash + 1 - reader->path), reader->path,
+			 config->colours);
 	if (n < 0 || n >= CONFIG_PATH_MAX)
-		return config_reader_fail(reader, setting_at(settings, "vision.colours"), "too long a path", "at most 255 characters with its folder");
+		return config_reader_fail(reader, setting_at(settings, "vision.colours"), "too long a path",
+					  "at most 255 characters with its folder");
 	memcpy(config->colours, joined, (size_t)n + 1);
 	return 0;
 }
@@ -105,9 +111,10 @@ static int finish(struct config_reader *reader, const config_t *settings, struct
 	return code == 0 ? finish_colours(reader, settings, config) : code;
 }
 
-/* ---- the file ------------------------------------------------------------------------------------------------------- */
+/* ---- the file ---------------------------------------------------------------------------------------------------- */
 
-static int read_settings(struct config *config, config_t *settings, const char *path, const char *text, char *err, size_t err_size)
+static int read_settings(struct config *config, config_t *settings, const char *path, const char *text, char *err,
+			 size_t err_size)
 {
 	config_set_options(settings, CONFIG_OPTION_AUTOCONVERT);
 	if (config_read_string(settings, text) != CONFIG_TRUE) {

@@ -1,4 +1,5 @@
-/* The configuration of one table: config/NAME.conf (libconfig). Every key has a unit and a range; the whole file is checked. */
+/* The configuration of one table: config/NAME.conf (libconfig). Every key has a unit and a range; the whole file is
+ * checked. */
 #ifndef BILLIARD_APP_CONFIG_H
 #define BILLIARD_APP_CONFIG_H
 
@@ -72,7 +73,7 @@ struct config {
 	struct cost_profile profile;	/* the chosen one of profiles */
 	struct camera_intrinsics camera;
 	struct marker_layout markers;
-	char colours[CONFIG_PATH_MAX];	/* colour parameter file; written relative to the configuration, here as it is to be opened */
+	char colours[CONFIG_PATH_MAX];	/* colour parameters; in the file relative to it, here to be opened */
 	char source[CONFIG_PATH_MAX];	/* frame source of billiard-vision */
 	double camera_rate;		/* CAMERA messages per second, 0 none */
 	double marker_interval, pose_keep;	/* s */
@@ -85,8 +86,8 @@ struct config {
 	int service_count;
 };
 
-/* Reads and checks a file. 0, or a negative errno and "file:line: key: found ..., allowed ..." in err; *config is untouched on failure.
- * (Not "config_read": libconfig exports that name.) */
+/* Reads and checks a file. 0, or a negative errno and "file:line: key: found ..., allowed ..." in err; *config is
+ * untouched on failure. (Not "config_read": libconfig exports that name.) */
 int config_load(struct config *config, const char *path, char *err, size_t err_size);
 
 /* Profile of that name among config->profiles, NULL when there is none. */

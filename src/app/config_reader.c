@@ -12,14 +12,23 @@ enum { NAME_SIZE = 128, VALUE_SIZE = 80 };
 
 static const struct {
 	const char *name;
-	double per_si;	/* file units in one SI unit: dividing by it keeps 1881 mm the double nearest to 1.881 */
+	double per_si; /* file units in one SI unit: dividing by it keeps 1881 mm the double nearest to 1.881 */
 } unit_table[UNIT_COUNT] = {
-	[UNIT_NONE] = {"", 1},		[UNIT_MM] = {" mm", 1000},  [UNIT_MM_S] = {" mm/s", 1000}, [UNIT_MM_S2] = {" mm/s^2", 1000},
-	[UNIT_DEGREE] = {" degrees", 180 / M_PI}, [UNIT_MS] = {" ms", 1000},  [UNIT_SECOND] = {" s", 1},	   [UNIT_HERTZ] = {" 1/s", 1},
-	[UNIT_KG] = {" kg", 1},		[UNIT_PX] = {" px", 1},	    [UNIT_GREY] = {" grey levels", 1}, [UNIT_S_M] = {" s/m", 1},
+	[UNIT_NONE] = {"", 1},
+	[UNIT_MM] = {" mm", 1000},
+	[UNIT_MM_S] = {" mm/s", 1000},
+	[UNIT_MM_S2] = {" mm/s^2", 1000},
+	[UNIT_DEGREE] = {" degrees", 180 / M_PI},
+	[UNIT_MS] = {" ms", 1000},
+	[UNIT_SECOND] = {" s", 1},
+	[UNIT_HERTZ] = {" 1/s", 1},
+	[UNIT_KG] = {" kg", 1},
+	[UNIT_PX] = {" px", 1},
+	[UNIT_GREY] = {" grey levels", 1},
+	[UNIT_S_M] = {" s/m", 1},
 };
 
-/* ---- messages ------------------------------------------------------------------------------------------------------- */
+/* ---- messages ---------------------------------------------------------------------------------------------------- */
 
 /* "table.cushions[3].from". */
 static void setting_name(const config_setting_t *setting, char *out, size_t size)
@@ -90,15 +99,18 @@ void config_reader_allowed(const struct config_key *key, char *out, size_t size)
 	}
 }
 
-static int complain(struct config_reader *reader, const config_setting_t *at, const char *name, const char *found, const char *allowed)
+static int complain(struct config_reader *reader, const config_setting_t *at, const char *name, const char *found,
+		    const char *allowed)
 {
 	const char *file = config_setting_source_file(at) ? config_setting_source_file(at) : reader->path;
-	unsigned line = config_setting_source_line(at);	/* 0 for the whole file */
-	snprintf(reader->err, reader->err_size, "%s:%u: %s: found %s, allowed %s", file, line ? line : 1, name, found, allowed);
+	unsigned line = config_setting_source_line(at); /* 0 for the whole file */
+	snprintf(reader->err, reader->err_size, "%s:%u: %s: found %s, allowed %s", file, line ? line : 1, name, found,
+		 allowed);
 	return -EINVAL;
 }
 
-int config_reader_fail(struct config_reader *reader, const config_setting_t *setting, const char *found, const char *allowed)
+int config_reader_fail(struct config_reader *reader, const config_setting_t *setting, const char *found,
+		       const char *allowed)
 {
 	char name[NAME_SIZE], value[VALUE_SIZE];
 	setting_name(setting, name, sizeof name);
@@ -114,8 +126,8 @@ static int fail(struct config_reader *reader, const config_setting_t *setting, c
 }
 
 /* A key that is not there, or one that nobody knows: named below its group. */
-static int fail_member(struct config_reader *reader, const config_setting_t *group, const char *member, const char *found,
-		       const char *allowed)
+static int fail_member(struct config_reader *reader, const config_setting_t *group, const char *member,
+		       const char *found, const char *allowed)
 {
 	char name[2 * NAME_SIZE];
 	setting_name(group, name, NAME_SIZE);
@@ -124,7 +136,7 @@ static int fail_member(struct config_reader *reader, const config_setting_t *gro
 	return complain(reader, group, name, found, allowed);
 }
 
-/* ---- values --------------------------------------------------------------------------------------------------------- */
+/* ---- values ------------------------------------------------------------------------------------------------------ */
 
 /* Written so that a value that is no number fails. */
 static bool in_range(const struct config_key *key, double value)
@@ -132,7 +144,8 @@ static bool in_range(const struct config_key *key, double value)
 	return value >= key->min && value <= key->max;
 }
 
-static int read_number(struct config_reader *reader, const config_setting_t *setting, const struct config_key *key, double *out)
+static int read_number(struct config_reader *reader, const config_setting_t *setting, const struct config_key *key,
+		       double *out)
 {
 	if (!config_setting_is_number(setting) || !in_range(key, config_setting_get_float(setting)))
 		return fail(reader, setting, key);
@@ -140,7 +153,8 @@ static int read_number(struct config_reader *reader, const config_setting_t *set
 	return 0;
 }
 
-static int read_whole(struct config_reader *reader, const config_setting_t *setting, const struct config_key *key, void *out)
+static int read_whole(struct config_reader *reader, const config_setting_t *setting, const struct config_key *key,
+		      void *out)
 {
 	int type = config_setting_type(setting);
 	if (type != CONFIG_TYPE_INT && type != CONFIG_TYPE_INT64)
@@ -155,7 +169,8 @@ static int read_whole(struct config_reader *reader, const config_setting_t *sett
 	return 0;
 }
 
-static int read_flag(struct config_reader *reader, const config_setting_t *setting, const struct config_key *key, bool *out)
+static int read_flag(struct config_reader *reader, const config_setting_t *setting, const struct config_key *key,
+		     bool *out)
 {
 	if (config_setting_type(setting) != CONFIG_TYPE_BOOL)
 		return fail(reader, setting, key);
@@ -163,7 +178,8 @@ static int read_flag(struct config_reader *reader, const config_setting_t *setti
 	return 0;
 }
 
-static int read_text(struct config_reader *reader, const config_setting_t *setting, const struct config_key *key, char *out)
+static int read_text(struct config_reader *reader, const config_setting_t *setting, const struct config_key *key,
+		     char *out)
 {
 	assert(key->max < (double)key->size);
 	if (config_setting_type(setting) != CONFIG_TYPE_STRING)
@@ -176,10 +192,12 @@ static int read_text(struct config_reader *reader, const config_setting_t *setti
 	return 0;
 }
 
-static int read_numbers(struct config_reader *reader, const config_setting_t *setting, const struct config_key *key, double *out)
+static int read_numbers(struct config_reader *reader, const config_setting_t *setting, const struct config_key *key,
+			double *out)
 {
 	int type = config_setting_type(setting);
-	if ((type != CONFIG_TYPE_LIST && type != CONFIG_TYPE_ARRAY) || (size_t)config_setting_length(setting) != key->size)
+	if ((type != CONFIG_TYPE_LIST && type != CONFIG_TYPE_ARRAY) ||
+	    (size_t)config_setting_length(setting) != key->size)
 		return fail(reader, setting, key);
 	for (size_t i = 0; i < key->size; i++) {
 		const config_setting_t *item = config_setting_get_elem((config_setting_t *)setting, (unsigned)i);
@@ -190,7 +208,8 @@ static int read_numbers(struct config_reader *reader, const config_setting_t *se
 	return 0;
 }
 
-static int read_list(struct config_reader *reader, const config_setting_t *setting, const struct config_key *key, char *base)
+static int read_list(struct config_reader *reader, const config_setting_t *setting, const struct config_key *key,
+		     char *base)
 {
 	if (config_setting_type(setting) != CONFIG_TYPE_LIST || !in_range(key, config_setting_length(setting)))
 		return fail(reader, setting, key);
@@ -207,7 +226,8 @@ static int read_list(struct config_reader *reader, const config_setting_t *setti
 	return 0;
 }
 
-static int read_key(struct config_reader *reader, const config_setting_t *setting, const struct config_key *key, char *base)
+static int read_key(struct config_reader *reader, const config_setting_t *setting, const struct config_key *key,
+		    char *base)
 {
 	void *out = base + key->offset;
 	switch (key->type) {
@@ -232,7 +252,7 @@ static int read_key(struct config_reader *reader, const config_setting_t *settin
 	return 0;
 }
 
-/* ---- groups --------------------------------------------------------------------------------------------------------- */
+/* ---- groups ------------------------------------------------------------------------------------------------------ */
 
 static const struct config_key *find_key(const struct config_key *keys, const char *name)
 {
@@ -256,7 +276,8 @@ static int refuse_unknown(struct config_reader *reader, const config_setting_t *
 	return 0;
 }
 
-int config_reader_group(struct config_reader *reader, const config_setting_t *group, const struct config_key *keys, void *base)
+int config_reader_group(struct config_reader *reader, const config_setting_t *group, const struct config_key *keys,
+			void *base)
 {
 	int code = refuse_unknown(reader, group, keys);
 	for (const struct config_key *key = keys; code == 0 && key->name; key++) {

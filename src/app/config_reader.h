@@ -18,7 +18,18 @@ enum config_type {
 
 /* Unit of a number in the file; inside it is SI. */
 enum config_unit {
-	UNIT_NONE, UNIT_MM, UNIT_MM_S, UNIT_MM_S2, UNIT_DEGREE, UNIT_MS, UNIT_SECOND, UNIT_HERTZ, UNIT_KG, UNIT_PX, UNIT_GREY, UNIT_S_M,
+	UNIT_NONE,
+	UNIT_MM,
+	UNIT_MM_S,
+	UNIT_MM_S2,
+	UNIT_DEGREE,
+	UNIT_MS,
+	UNIT_SECOND,
+	UNIT_HERTZ,
+	UNIT_KG,
+	UNIT_PX,
+	UNIT_GREY,
+	UNIT_S_M,
 	UNIT_COUNT
 };
 
@@ -44,10 +55,14 @@ enum { CONFIG_ALLOWED_SIZE = 80 };
 /* What a key may hold, for people: "a number 0.001 to 0.1". */
 void config_reader_allowed(const struct config_key *key, char *out, size_t size);
 
-/* All keys of the table from the group into base. 0, or -EINVAL with "file:line: key: found ..., allowed ..." in err. */
-int config_reader_group(struct config_reader *reader, const config_setting_t *group, const struct config_key *keys, void *base);
+/* All keys of the table from the group into base. 0, or -EINVAL with "file:line: key: found ..., allowed ..." in err;
+ * what was read before stays in base. */
+int config_reader_group(struct config_reader *reader, const config_setting_t *group, const struct config_key *keys,
+			void *base);
 
-/* Writes such a message for a setting whose value fails a check of the caller's. Returns -EINVAL. */
-int config_reader_fail(struct config_reader *reader, const config_setting_t *setting, const char *found, const char *allowed);
+/* Writes such a message for a setting whose value fails a check of the caller's; found NULL: the value itself.
+ * Returns -EINVAL. */
+int config_reader_fail(struct config_reader *reader, const config_setting_t *setting, const char *found,
+		       const char *allowed);
 
 #endif

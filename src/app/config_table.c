@@ -1,21 +1,29 @@
 #include "app/config_table.h"
 
-/* Every key with its unit and range in one row; docs/configuration.md and the files in config/ say the same in words. */
+/* Every key with its unit and range in one row; docs/configuration.md and the files in config/ say the same in
+ * words. */
+/* clang-format off: a table is read by its columns. */
 
 #define AT(member) offsetof(struct config_file, member)
 #define IN(type, member) offsetof(struct type, member)
 
-#define NUMBER(key, unit_, low, high, at) {.name = key, .type = CONFIG_NUMBER, .unit = unit_, .offset = at, .min = low, .max = high}
-#define WHOLE(key, unit_, low, high, at) {.name = key, .type = CONFIG_WHOLE, .unit = unit_, .offset = at, .min = low, .max = high}
-#define COUNT(key, low, high, at) {.name = key, .type = CONFIG_COUNT64, .offset = at, .min = low, .max = high}
+#define RANGE(low, high) .min = low, .max = high
+#define NUMBER(key, unit_, low, high, at) \
+	{.name = key, .type = CONFIG_NUMBER, .unit = unit_, .offset = at, RANGE(low, high)}
+#define WHOLE(key, unit_, low, high, at) \
+	{.name = key, .type = CONFIG_WHOLE, .unit = unit_, .offset = at, RANGE(low, high)}
+#define COUNT(key, low, high, at) {.name = key, .type = CONFIG_COUNT64, .offset = at, RANGE(low, high)}
 #define FLAG(key, at) {.name = key, .type = CONFIG_FLAG, .offset = at}
-#define TEXT(key, low, high, at) {.name = key, .type = CONFIG_TEXT, .offset = at, .min = low, .max = high, .size = (high) + 1}
+#define TEXT(key, low, high, at) \
+	{.name = key, .type = CONFIG_TEXT, .offset = at, RANGE(low, high), .size = (high) + 1}
 #define NUMBERS(key, n, unit_, low, high, at) \
-	{.name = key, .type = CONFIG_NUMBERS, .unit = unit_, .offset = at, .min = low, .max = high, .size = n}
+	{.name = key, .type = CONFIG_NUMBERS, .unit = unit_, .offset = at, RANGE(low, high), .size = n}
 #define POINT(key, at) NUMBERS(key, 2, UNIT_MM, -5000, 5000, at)
 #define SECTION(key, table) {.name = key, .type = CONFIG_SECTION, .keys = table}
-#define LIST(key, low, high, at, item, table, count) \
-	{.name = key, .type = CONFIG_LIST, .offset = at, .min = low, .max = high, .size = sizeof(item), .count_offset = count, .keys = table}
+/* An array member of struct config_file and the member that counts it. */
+#define LIST(key, low, high, array, counter, table) \
+	{.name = key, .type = CONFIG_LIST, .offset = AT(array), RANGE(low, high), \
+	 .size = sizeof ((struct config_file *)0)->array[0], .count_offset = AT(counter), .keys = table}
 #define END {.name = NULL}
 
 static const struct config_key cushion_keys[] = {
@@ -59,9 +67,9 @@ static const struct config_key table_keys[] = {
 	POINT("d_centre", AT(config.table.baulk_d_centre)),
 	NUMBER("d_radius", UNIT_MM, 10, 1000, AT(config.table.baulk_d_radius)),
 	SECTION("spots", spot_keys),
-	LIST("cushions", 4, CUSHION_MAX, AT(config.table.cushion), struct cushion, cushion_keys, AT(config.table.cushion_count)),
-	LIST("jaws", 0, JAW_MAX, AT(config.table.jaw), struct jaw, jaw_keys, AT(config.table.jaw_count)),
-	LIST("pockets", 0, POCKET_MAX, AT(config.table.pocket), struct pocket, pocket_keys, AT(config.table.pocket_count)),
+	LIST("cushions", 4, CUSHION_MAX, config.table.cushion, config.table.cushion_count, cushion_keys),
+	LIST("jaws", 0, JAW_MAX, config.table.jaw, config.table.jaw_count, jaw_keys),
+	LIST("pockets", 0, POCKET_MAX, config.table.pocket, config.table.pocket_count, pocket_keys),
 	END,
 };
 
@@ -140,7 +148,7 @@ static const struct config_key markers_keys[] = {
 	WHOLE("dictionary_bits", UNIT_NONE, 3, 7, AT(config.markers.dictionary_bits)),
 	NUMBER("side", UNIT_MM, 5, 500, AT(config.markers.side)),
 	NUMBER("height", UNIT_MM, -100, 500, AT(config.markers.height)),
-	LIST("list", 3, MARKER_MAX, AT(config.markers.marker), ((struct marker_layout *)0)->marker[0], marker_keys, AT(config.markers.count)),
+	LIST("list", 3, MARKER_MAX, config.markers.marker, config.markers.count, marker_keys),
 	END,
 };
 
@@ -220,7 +228,7 @@ const struct config_key config_keys[] = {
 	TEXT("profile", 1, 15, AT(profile)),
 	SECTION("table", table_keys),
 	SECTION("material", material_keys),
-	LIST("profiles", 1, CONFIG_PROFILE_MAX, AT(config.profiles), struct cost_profile, profile_keys, AT(config.profile_count)),
+	LIST("profiles", 1, CONFIG_PROFILE_MAX, config.profiles, config.profile_count, profile_keys),
 	SECTION("camera", camera_keys),
 	SECTION("markers", markers_keys),
 	SECTION("vision", vision_keys),
@@ -228,6 +236,6 @@ const struct config_key config_keys[] = {
 	SECTION("infinity", infinity_keys),
 	SECTION("projector", projector_keys),
 	SECTION("virtual_table", virtual_keys),
-	LIST("services", 0, CONFIG_SERVICE_MAX, AT(config.service), struct config_service, service_keys, AT(config.service_count)),
+	LIST("services", 0, CONFIG_SERVICE_MAX, config.service, config.service_count, service_keys),
 	END,
 };

@@ -6,7 +6,7 @@
 #include <stdio.h>
 #include <string.h>
 
-static const double mm = 1000;	/* in a metre */
+static const double mm = 1000; /* in a metre */
 
 /* Balls that the detector is less sure of than this are drawn in a warning colour. */
 static const double sure = 0.5;
@@ -61,7 +61,8 @@ static void draw_table(cairo_t *cr, const struct camera *camera, const struct ta
 		bed_line(cr, camera, table->cushion[i].a, table->cushion[i].b);
 	for (int i = 0; i < table->pocket_count; i++) {
 		for (int k = 0; k <= STEPS; k++) {
-			vec2 px, at = vec2_madd(table->pocket[i].centre, table->pocket[i].radius, vec2_from_angle(2 * M_PI * k / STEPS));
+			vec2 px, at = vec2_madd(table->pocket[i].centre, table->pocket[i].radius,
+						vec2_from_angle(2 * M_PI * k / STEPS));
 			if (camera_project(camera, at, 0, &px))
 				cairo_line_to(cr, px.x + 0.5, px.y + 0.5);
 		}
@@ -86,7 +87,8 @@ static void draw_ball(cairo_t *cr, const struct vision_ball *ball)
 	text_at(cr, ball->px.x + ball->radius_px + 2, ball->px.y + 10, label);
 }
 
-/* Reasons get letters, told at the top of the picture: written out beside each cross they would hide what they speak of. */
+/* Reasons get letters, told at the top of the picture: written out beside each cross they would hide what they speak
+ * of. */
 enum { REASON_MAX = 8 };
 struct legend {
 	const char *reason[REASON_MAX];
@@ -110,7 +112,8 @@ static int legend_entry(struct legend *legend, const char *reason)
 	return i;
 }
 
-static void draw_refusal(cairo_t *cr, const struct overlay *overlay, const struct vision_refusal *refused, struct legend *legend)
+static void draw_refusal(cairo_t *cr, const struct overlay *overlay, const struct vision_refusal *refused,
+			 struct legend *legend)
 {
 	const double arm = 4;
 	vec2 px;
@@ -138,7 +141,8 @@ static void draw_refusals(cairo_t *cr, const struct overlay *overlay)
 	cairo_set_font_size(cr, 12);
 	for (int i = 0; i < legend.count; i++) {
 		char line[96];
-		snprintf(line, sizeof line, "x %c: refused, %s (%d); rim share", 'a' + i, legend.reason[i], legend.seen[i]);
+		snprintf(line, sizeof line, "x %c: refused, %s (%d); rim share", 'a' + i, legend.reason[i],
+			 legend.seen[i]);
 		text_at(cr, 10, 62 + 15 * i, line);
 	}
 }
@@ -150,10 +154,11 @@ static void draw_state(cairo_t *cr, const struct vision_result *result)
 	if (result->calibration == CALIBRATION_NONE)
 		snprintf(line, sizeof line, "not calibrated: %s", result->reason);
 	else
-		snprintf(line, sizeof line, "%d markers, residual %.2f px = %.2f mm", result->markers_seen, result->residual_px,
-			 result->residual * mm);
+		snprintf(line, sizeof line, "%d markers, residual %.2f px = %.2f mm", result->markers_seen,
+			 result->residual_px, result->residual * mm);
 	text_at(cr, 10, 22, line);
-	snprintf(line, sizeof line, "%d balls%s", result->ball_count, result->occluded ? ", something covers the table" : "");
+	snprintf(line, sizeof line, "%d balls%s", result->ball_count,
+		 result->occluded ? ", something covers the table" : "");
 	text_at(cr, 10, 44, line);
 }
 

@@ -14,8 +14,9 @@ struct overlay {
 	int refused_count;
 };
 
-/* Writes a PNG: outline of the bed and the pockets through the camera found, a ring, colour and confidence for each ball, a cross and the reason for
- * what was refused, residuals and state as text. 0, or a negative errno with "path: reason" in err. */
+/* Writes a PNG: outline of the bed and the pockets through the camera found, a ring, colour and confidence for each
+ * ball, a cross and the reason for what was refused, residuals and state as text. 0, or a negative errno with "path:
+ * reason" in err. */
 int overlay_write(const struct overlay *overlay, const char *path, char *err, size_t err_size);
 
 #endif

@@ -8,17 +8,17 @@
 #include <string.h>
 
 static const double px_per_m = 500;
-static const double margin = 0.1;	/* m around the bed */
-static const double path_step = 0.005;	/* s between two points of a curved path */
+static const double margin = 0.1;      /* m around the bed */
+static const double path_step = 0.005; /* s between two points of a curved path */
 
 struct rgb {
 	double r, g, b;
 };
 
 static const struct rgb colour_table[COLOUR_COUNT] = {
-	[COLOUR_WHITE] = {1, 1, 1},	     [COLOUR_RED] = {0.8, 0.1, 0.1},	  [COLOUR_YELLOW] = {0.95, 0.8, 0.1},
-	[COLOUR_GREEN] = {0, 0.35, 0.15},    [COLOUR_BROWN] = {0.45, 0.25, 0.1},  [COLOUR_BLUE] = {0.1, 0.2, 0.8},
-	[COLOUR_PINK] = {1, 0.6, 0.7},	     [COLOUR_BLACK] = {0.05, 0.05, 0.05}, [COLOUR_UNKNOWN] = {0.6, 0.6, 0.6},
+	[COLOUR_WHITE] = {1, 1, 1},	  [COLOUR_RED] = {0.8, 0.1, 0.1},      [COLOUR_YELLOW] = {0.95, 0.8, 0.1},
+	[COLOUR_GREEN] = {0, 0.35, 0.15}, [COLOUR_BROWN] = {0.45, 0.25, 0.1},  [COLOUR_BLUE] = {0.1, 0.2, 0.8},
+	[COLOUR_PINK] = {1, 0.6, 0.7},	  [COLOUR_BLACK] = {0.05, 0.05, 0.05}, [COLOUR_UNKNOWN] = {0.6, 0.6, 0.6},
 };
 
 static void set_colour(cairo_t *cr, struct rgb c, double alpha)

@@ -10,14 +10,14 @@
 #include "app/text_file.h"
 
 enum { POSITION_SIZE_MAX = 1 << 16, FIELD_COUNT = 4, FIELD_SIZE = 48 };
-static const double mm = 1000;			/* in a metre */
+static const double mm = 1000; /* in a metre */
 static const double speed_max_mm_s = 20000;
 
 struct reader {
 	const struct table *table;
-	const char *name;		/* for messages */
+	const char *name; /* for messages */
 	int line;
-	int line_of[BALL_MAX];		/* where each ball stood */
+	int line_of[BALL_MAX]; /* where each ball stood */
 	struct position position;
 	char *err;
 	size_t err_size;
@@ -37,7 +37,7 @@ __attribute__((format(printf, 3, 4))) static int fail(struct reader *reader, int
 	return -EINVAL;
 }
 
-/* ---- one line ------------------------------------------------------------------------------------------------------- */
+/* ---- one line ---------------------------------------------------------------------------------------------------- */
 
 struct fields {
 	char text[FIELD_COUNT][FIELD_SIZE];
@@ -121,7 +121,8 @@ static int parse_velocity(struct reader *reader, const struct fields *fields)
 {
 	if (reader->position.has_velocity)
 		return fail(reader, reader->line, "a second V line");
-	int code = parse_point(reader, fields->text[1], fields->text[2], speed_max_mm_s, "mm/s", &reader->position.velocity);
+	int code = parse_point(reader, fields->text[1], fields->text[2], speed_max_mm_s, "mm/s",
+			       &reader->position.velocity);
 	if (code == 0 && vec2_norm(reader->position.velocity) * mm > speed_max_mm_s)
 		return fail(reader, reader->line, "faster than %g mm/s", speed_max_mm_s);
 	reader->position.has_velocity = code == 0;
@@ -167,7 +168,7 @@ static int parse_line(struct reader *reader, const char *line, const char *end)
 	return parse_ball(reader, &fields);
 }
 
-/* ---- the whole ------------------------------------------------------------------------------------------------------ */
+/* ---- the whole --------------------------------------------------------------------------------------------------- */
 
 static int check(struct reader *reader)
 {
@@ -178,7 +179,8 @@ static int check(struct reader *reader)
 		return fail(reader, 0, "no balls");
 	if (position->has_velocity && position_cue(position) < 0)
 		return fail(reader, 0, "a V line but no cue ball");
-	if (table_check_balls(reader->table, position->ball, position->count, &first, &second, reason, sizeof reason) == 0)
+	if (table_check_balls(reader->table, position->ball, position->count, &first, &second, reason, sizeof reason) ==
+	    0)
 		return 0;
 	int later = second > first ? second : first;
 	if (second >= 0)

@@ -1,4 +1,5 @@
-/* Position text of thesis 4.8: one ball a line "ID, TYPE, x, y" in mm, '#' comments, an optional "V, vx, vy" line in mm/s for the cue ball. */
+/* Position text of thesis 4.8: one ball a line "ID, TYPE, x, y" in mm, '#' comments, an optional "V, vx, vy" line in
+ * mm/s for the cue ball. */
 #ifndef BILLIARD_APP_POSITION_H
 #define BILLIARD_APP_POSITION_H
 
@@ -16,8 +17,9 @@ struct position {
 	vec2 velocity;			/* m/s, of the cue ball */
 };
 
-/* From text (name: for messages). 0, or -EINVAL with "name:line: reason" in err; *out is untouched on failure. Refuses two cue balls, equal IDs, unknown
- * types, more than BALL_MAX balls, numbers that are none, balls that overlap or lie off the table. */
+/* From text (name: for messages). 0, or -EINVAL with "name:line: reason" in err; *out is untouched on failure.
+ * Refuses two cue balls, equal IDs, unknown types, no ball or more than BALL_MAX, numbers that are none, balls that
+ * overlap or lie off the table, a velocity without a cue ball. */
 int position_parse(struct position *out, const struct table *table, const char *name, const char *text, size_t size,
 		   char *err, size_t err_size);
 /* The same from a file ("-" is standard input). */
