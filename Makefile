@@ -32,7 +32,7 @@ PROGRAMS := billiard billiard-vision billiard-planner billiard-infinity billiard
 # tests/test_NAME.c each; tests/NAME.c shared by them
 TESTS := fsm stability plan_message controller planner_service \
 	config position cmd plot draw render player table_camera contact_real contact_recorded shot_file \
-	rules cost geometry frontier pool scheme candidate plan plan_thesis \
+	rules cost geometry frontier pool scheme candidate plan plan_thesis plan_hard \
 	ball detect event inverse model motion queue roots sim sim_hard table trace
 TEST_SHARED := harness poly_judge scenes search_scenes shot_compare
 # tests that are scripts: tests/NAME.sh, called with the build folder

@@ -7,6 +7,27 @@
 /* Share of a pocket's radius that the outermost aims lie off its middle; and what such an aim costs, so that the middle comes first. */
 static const double AIM_SPREAD = 0.8, AIM_COST = 0.25;
 
+/* A ball this near to a cushion (m) cannot be hit so that it goes straight for a pocket along it: the one that strikes it would meet the
+ * cushion first. It is played against the cushion by a small angle, and comes off it by the same. */
+static const double FROZEN = 2e-3, ALONG_TILT = 0.5 * M_PI / 180;
+
+/* Where to aim a ball at from on a cushion; false when it lies on none or the pocket is not at its end. */
+static bool along_point(const struct scene *scene, int pocket, vec2 from, vec2 *point)
+{
+	const struct pocket *p = &scene->table->pocket[pocket];
+	for (int i = 0; i < scene->mirrors->count; i++) {
+		const struct mirror *m = &scene->mirrors->mirror[i];
+		vec2 along = vec2_perp(m->normal);
+		double ahead = vec2_dot(vec2_sub(p->centre, from), along);
+		vec2 foot = vec2_madd(from, ahead, along);
+		if (vec2_dot(vec2_sub(from, m->point), m->normal) > FROZEN || vec2_dist(foot, p->centre) > AIM_SPREAD * p->radius)
+			continue;
+		*point = vec2_madd(foot, -fabs(ahead) * tan(ALONG_TILT), m->normal);
+		return true;
+	}
+	return false;
+}
+
 static vec2 aim_point(const struct scene *scene, int pocket, int aim)
 {
 	const struct pocket *p = &scene->table->pocket[pocket];
@@ -24,7 +45,7 @@ struct node candidate_root(const struct scene *scene, int pocket, int aim)
 		.search_cost = cost,
 		.speed = scene->profile->pocket_speed,
 		.carry = 1,
-		.to = aim_point(scene, pocket, aim),
+		.to = aim == AIM_ALONG ? p->centre : aim_point(scene, pocket, aim),
 		.after = vec2_scale(p->normal, -1),
 		.pocket = (int16_t)pocket,
 		.aim = (int8_t)aim,
@@ -145,6 +166,8 @@ static bool try_way(const struct scene *scene, const struct node *node, const st
 		if (way.leg[i] <= 0)
 			return false;
 	speed = way_backward(scene, &way, speed);
+	if (node->chain_count == 0 && node->aim == AIM_ALONG)
+		speed = cushion_backward(scene->table, speed);
 	if (speed > profile->max_speed || !way_is_free(scene, node, &way, ball))
 		return false;
 	extend(scene, node, &way, ball, sequence, cos_target, speed, child);
@@ -171,32 +194,62 @@ static uint32_t next_balls(const struct scene *scene, const struct node *node)
 	return balls;
 }
 
+/* Children of one ball. */
+static int expand_ball(const struct scene *scene, const struct node *node, const struct images *images, int ball, struct node *child,
+		       int capacity, bool *overflow)
+{
+	int count = 0;
+	for (int s = 0; s < images->count; s++) {
+		struct node next;
+		if (!images->valid[s] || !try_way(scene, node, images, ball, s, &next))
+			continue;
+		if (count < capacity)
+			child[count++] = next;
+		else
+			*overflow = true;
+	}
+	return count;
+}
+
+/* The root for balls on cushions: each has an aim of its own, and no cushions in between. */
+static int expand_along(const struct scene *scene, const struct node *node, uint32_t balls, struct node *child, int capacity,
+			bool *overflow)
+{
+	int count = 0;
+	for (int b = 0; b < scene->count; b++) {
+		struct images images;
+		vec2 point;
+		if (!(balls >> b & 1) || scene->ball[b].phase == BALL_POTTED ||
+		    !along_point(scene, node->pocket, scene->ball[b].pos, &point))
+			continue;
+		images_init(&images, scene->mirrors, point, node->after, 0);
+		count += expand_ball(scene, node, &images, b, child + count, capacity - count, overflow);
+	}
+	return count;
+}
+
 int candidate_expand(const struct scene *scene, const struct node *node, struct node *child, int capacity, bool *overflow)
 {
 	assert(!node->complete);
+	uint32_t balls = next_balls(scene, node);
+	if (node->chain_count == 0 && node->aim == AIM_ALONG)
+		return expand_along(scene, node, balls, child, capacity, overflow);
 	struct images images;
 	images_init(&images, scene->mirrors, node->to, node->after, scene->rails);
-	uint32_t balls = next_balls(scene, node);
 	int count = 0;
-	for (int b = 0; b < scene->count; b++) {
-		if (!(balls >> b & 1) || scene->ball[b].phase == BALL_POTTED)
-			continue;
-		for (int s = 0; s < images.count; s++) {
-			struct node next;
-			if (!images.valid[s] || !try_way(scene, node, &images, b, s, &next))
-				continue;
-			if (count < capacity)
-				child[count++] = next;
-			else
-				*overflow = true;
-		}
-	}
+	for (int b = 0; b < scene->count; b++)
+		if ((balls >> b & 1) && scene->ball[b].phase != BALL_POTTED)
+			count += expand_ball(scene, node, &images, b, child + count, capacity - count, overflow);
 	return count;
 }
 
 void candidate_goals(const struct scene *scene, const struct node *node, struct goal goal[PLAN_CHAIN_MAX])
 {
-	vec2 to = aim_point(scene, node->pocket, node->aim);
+	vec2 to = scene->table->pocket[node->pocket].centre;
+	if (node->aim != AIM_ALONG)
+		to = aim_point(scene, node->pocket, node->aim);
+	else
+		along_point(scene, node->pocket, scene->ball[node->chain[0]].pos, &to);
 	for (int i = 0; i < node->chain_count; i++) {
 		struct images images;
 		struct way way;

@@ -5,6 +5,9 @@
 #include "search/cost.h"
 #include "search/geometry.h"
 
+/* An aim for balls that lie on a cushion: along it. */
+enum { AIM_ALONG = 100 };
+
 /* A chain of balls that is open at its near end: chain[0] is to fall, chain[chain_count - 1] must get to know who strikes it.
  * Complete when that is the cue ball: then angle and start_speed hold. */
 struct node {
@@ -17,7 +20,7 @@ struct node {
 	double angle;		/* rad, of the complete chain */
 	uint32_t state;		/* index of the position it belongs to */
 	int16_t pocket;
-	int8_t aim;		/* 0 the middle of the pocket, +-1, ... points to either side */
+	int8_t aim;		/* 0 the middle of the pocket, +-1, ... points to either side, or AIM_ALONG */
 	uint16_t sequence[PLAN_CHAIN_MAX];	/* of each ball's way */
 	int8_t chain[PLAN_CHAIN_MAX];
 	uint8_t chain_count, rails;
@@ -39,7 +42,7 @@ struct scene {
 
 enum { EXPAND_MAX = BALL_MAX * SEQUENCE_MAX };
 
-/* The root of one pocket, aimed at a point of it: 0 its middle, up to +-(profile.aims - 1) / 2. */
+/* The root of one pocket, aimed at a point of it: 0 its middle, up to +-(profile.aims - 1) / 2, or AIM_ALONG. */
 struct node candidate_root(const struct scene *scene, int pocket, int aim);
 
 /* All chains that are one ball longer, best effort in no order; at most capacity. Returns how many; *overflow is set when more were there. */

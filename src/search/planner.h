@@ -14,7 +14,7 @@ enum {
 	SPEEDS_MAX = 32,		/* start speeds of one candidate */
 	CHILDREN_MAX = 2048,	/* of one expansion */
 	STATES_MAX = 2048,
-	AIMS_MAX = 9,			/* points of a pocket aimed at */
+	AIMS_MAX = 10,			/* aims at a pocket: up to 9 points of it, and along a cushion */
 	ROOTS_MAX = POCKET_MAX * AIMS_MAX,
 	NO_STATE = -1
 };

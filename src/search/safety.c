@@ -5,7 +5,7 @@
 
 #include "search/planner.h"
 
-enum { AIMS = 5, AIM_MAX = 128, FAN_ANGLES = 360, FAN_SPEEDS = 2 };
+enum { AIMS = 5, AIM_MAX = 128, SAFETY_RAILS = 2, FAN_ANGLES = 360, FAN_SPEEDS = 2 };
 
 /* m/s that the cue ball should have left on contact. */
 static const double CONTACT_SPEED = 0.3;
@@ -54,7 +54,7 @@ static void aim_at(const struct scene *scene, int state, int ball, double off, s
 	uint32_t others = ~(1u << ball | 1u << scene->cue);
 	vec2 side = vec2_scale(vec2_perp(vec2_unit(vec2_sub(target, cue))), off * scene->table->ball_radius);
 	struct images images;
-	images_init(&images, scene->mirrors, vec2_add(target, side), (vec2){1, 0}, scene->rails > 1 ? scene->rails : 1);
+	images_init(&images, scene->mirrors, vec2_add(target, side), (vec2){1, 0}, scene->rails > SAFETY_RAILS ? scene->rails : SAFETY_RAILS);
 	for (int s = 0; s < images.count; s++) {
 		struct way way;
 		if (!images.valid[s] || !way_build(&way, scene->mirrors, &images, s, cue))
@@ -82,6 +82,17 @@ static void aim_at(const struct scene *scene, int state, int ball, double off, s
 	}
 }
 
+/* The ball that the cue ball touches first, -1 none. */
+static int16_t touched(const struct trace *trace, int cue)
+{
+	for (int i = 0; i < trace->count; i++) {
+		const struct event *event = &trace->entry[i].event;
+		if (event->kind == EVENT_BALL_BALL && (event->ball == cue || event->other == cue))
+			return event->ball == cue ? event->other : event->ball;
+	}
+	return -1;
+}
+
 static bool play(struct planner *planner, const struct aim *aim, struct record *record)
 {
 	const struct state *state = &planner->state[aim->state];
@@ -90,15 +101,15 @@ static bool play(struct planner *planner, const struct aim *aim, struct record *
 	record->shot = aim->shot;
 	record->target = aim->ball;	/* the ball named, for the judge */
 	record->chain[0] = (int16_t)planner->cue;
-	record->chain[1] = aim->ball;
-	record->chain[2] = record->chain[3] = -1;
-	record->chain_count = aim->ball >= 0 ? 2 : 1;
 	record->rails = aim->rails;
 	record->search_cost = aim->cost;
 	planner->sims++;
 	bool done = shot_play(planner->work, planner->def.table, &planner->def.model, state->ball, planner->ball_count,
 			      &state->rules, record, &outcome);
 	record->target = record->pocket = -1;
+	record->chain[1] = done ? touched(&planner->work->trace, planner->cue) : -1;
+	record->chain[2] = record->chain[3] = -1;
+	record->chain_count = record->chain[1] >= 0 ? 2 : 1;
 	record->cost = record->search_cost +
 		       cost_result(&planner->def.profile, record->points, record->shot.speed, record->search_cost);
 	record->success = NAN;

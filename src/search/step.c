@@ -89,13 +89,17 @@ int state_roots(const struct planner *planner, int index, struct node root[ROOTS
 	struct state *state = &planner->state[index];
 	set_scene(planner, state);
 	int outermost = (planner->def.profile.aims - 1) / 2, count = 0;
-	assert(2 * outermost < AIMS_MAX);
-	for (int p = 0; p < planner->def.table->pocket_count && state->scene.wanted; p++)
-		for (int aim = -outermost; aim <= outermost; aim++) {
-			root[count] = candidate_root(&state->scene, p, aim);
-			root[count].state = (uint32_t)index;
-			root[count++].cost += state->cost;
-		}
+	assert(2 * outermost + 2 <= AIMS_MAX);
+	for (int p = 0; p < planner->def.table->pocket_count && state->scene.wanted; p++) {
+		for (int aim = -outermost; aim <= outermost; aim++)
+			root[count++] = candidate_root(&state->scene, p, aim);
+		if (outermost > 0)
+			root[count++] = candidate_root(&state->scene, p, AIM_ALONG);
+	}
+	for (int i = 0; i < count; i++) {
+		root[i].state = (uint32_t)index;
+		root[i].cost += state->cost;
+	}
 	return count;
 }
 

@@ -1,0 +1,505 @@
+/* Hard cases by name, and requests that must be refused. */
+#include "harness.h"
+#include "search_scenes.h"
+#include "scenes.h"
+
+#include <errno.h>
+#include <math.h>
+#include <string.h>
+
+enum { TRACE_MAX = 4096 };
+static struct trace_entry entry[TRACE_MAX];
+
+/* A small scene on one table, searched once. */
+struct hard {
+	struct table table;
+	struct ball ball[BALL_MAX];
+	int count;
+	struct plan_request request;
+	struct plan_result result;
+	struct planner *planner;
+};
+
+static void begin(struct hard *hard, bool thesis)
+{
+	memset(hard, 0, sizeof *hard);
+	hard->table = thesis ? scene_thesis_table() : scene_snooker_table();
+}
+
+static int add(struct hard *hard, enum ball_colour colour, double x, double y)
+{
+	hard->ball[hard->count] = ball_at(colour, (vec2){x, y});
+	return hard->count++;
+}
+
+static void add_spot(struct hard *hard, enum ball_colour colour)
+{
+	add(hard, colour, hard->table.spot[colour].x, hard->table.spot[colour].y);
+}
+
+static void set_rules(struct hard *hard)
+{
+	hard->request = scene_request(hard->ball, hard->count);
+	hard->request.target = TARGET_RULES;
+}
+
+/* By the rules in earnest: what the thesis' program lets pass is off. */
+static void search_with(struct hard *hard, const char *model)
+{
+	struct cost_profile profile = cost_profile_thesis();
+	struct model m;
+	profile.any_first = profile.keep_flukes = false;
+	profile.aims = 3;
+	hard->planner = scene_planner(&hard->table, model, &profile, 1);
+	hard->result = scene_run(hard->planner, &hard->request);
+	ck_assert(model_from_name(model, &m));
+	ck_assert_int_gt(hard->result.plan_count, 0);
+	for (int i = 0; i < hard->result.plan_count; i++)
+		for (int s = 0; s < hard->result.plan[i].shot_count; s++) {
+			struct trace trace;
+			trace_init(&trace, entry, TRACE_MAX);
+			ck_assert(plan_shot_replay(&hard->table, &m, &hard->result.plan[i].shot[s], hard->count, &trace));
+		}
+}
+
+static void end(struct hard *hard)
+{
+	planner_destroy(hard->planner);
+}
+
+static const struct plan_shot *best(const struct hard *hard)
+{
+	return &hard->result.plan[0].shot[0];
+}
+
+static bool proposes(const struct hard *hard, int target, int pocket)
+{
+	for (int i = 0; i < hard->result.plan_count; i++) {
+		const struct plan_shot *shot = &hard->result.plan[i].shot[0];
+		if (shot->target == target && shot->pocket == pocket)
+			return true;
+	}
+	return false;
+}
+
+START_TEST(no_red_left)
+{
+	struct hard h;
+	begin(&h, true);
+	add(&h, COLOUR_WHITE, 0.1, 0.05);
+	for (int c = COLOUR_YELLOW; c <= COLOUR_BLACK; c++)
+		if (c != COLOUR_BLUE)
+			add_spot(&h, (enum ball_colour)c);
+	set_rules(&h);
+	h.request.rails = 1;
+	search_with(&h, "thesis");
+	for (int i = 0; i < h.result.plan_count; i++)
+		ck_assert_int_eq(h.ball[h.result.plan[i].shot[0].target].colour, COLOUR_YELLOW);
+	end(&h);
+}
+END_TEST
+
+START_TEST(two_colours_left_on_their_spots)
+{
+	struct hard h;
+	begin(&h, true);
+	add(&h, COLOUR_WHITE, 0.1, 0.1);
+	add_spot(&h, COLOUR_PINK);
+	add_spot(&h, COLOUR_BLACK);
+	set_rules(&h);
+	h.request.depth = 2;
+	h.request.rails = 1;
+	h.request.speeds = 3;
+	search_with(&h, "thesis");
+	const struct plan *plan = &h.result.plan[0];
+	ck_assert_int_eq(plan->shot_count, 2);
+	ck_assert_int_eq(plan->shot[0].target, 1);
+	ck_assert_int_eq(plan->shot[1].target, 2);
+	ck_assert_int_eq(plan->shot[1].start[1].phase, BALL_POTTED);
+	end(&h);
+}
+END_TEST
+
+START_TEST(one_ball_left)
+{
+	struct hard h;
+	begin(&h, true);
+	add(&h, COLOUR_WHITE, -0.2, 0.1);
+	add(&h, COLOUR_BLACK, 0.5, 0.2);
+	set_rules(&h);
+	h.request.depth = 3;	/* deeper than there are balls */
+	search_with(&h, "thesis");
+	ck_assert_int_eq(best(&h)->target, 1);
+	ck_assert_int_eq(h.result.plan[0].shot_count, 1);
+	end(&h);
+}
+END_TEST
+
+/* Touching, the way away from it: legal contact with another ball, never a push through the touching one. */
+START_TEST(cue_ball_frozen_to_a_ball)
+{
+	struct hard h;
+	begin(&h, true);
+	double d = 2 * h.table.ball_radius;
+	add(&h, COLOUR_WHITE, -0.3, 0);
+	add(&h, COLOUR_RED, -0.3 + d, 0);
+	add(&h, COLOUR_RED, -0.6, 0.3);
+	set_rules(&h);
+	search_with(&h, "thesis");
+	ck_assert_int_eq(h.result.status, PLAN_OK);
+	ck_assert(best(&h)->foul == 0);
+	end(&h);
+}
+END_TEST
+
+START_TEST(cue_ball_frozen_to_a_cushion)
+{
+	struct hard h;
+	begin(&h, true);
+	add(&h, COLOUR_WHITE, -0.3, h.table.width / 2 - h.table.ball_radius);
+	add(&h, COLOUR_RED, -0.2, -0.3);
+	set_rules(&h);
+	h.request.rails = 2;
+	search_with(&h, "thesis");
+	ck_assert_int_eq(best(&h)->target, 1);
+	/* never over the cushion that it lies on as the first */
+	for (int i = 0; i < h.result.plan_count; i++)
+		ck_assert(sin(h.result.plan[i].shot[0].shot.angle) < 1e-9);
+	end(&h);
+}
+END_TEST
+
+START_TEST(object_ball_frozen_to_the_cushion)
+{
+	struct hard h;
+	begin(&h, true);
+	double y = h.table.width / 2 - h.table.ball_radius;
+	add(&h, COLOUR_WHITE, 0.2, 0.2);
+	int red = add(&h, COLOUR_RED, 0.65, y);
+	set_rules(&h);
+	search_with(&h, "thesis");
+	ck_assert(proposes(&h, red, table_pocket(&h.table, "TOP-RIGHT")));
+	end(&h);
+}
+END_TEST
+
+/* Behind a wall of other balls: the answer goes over a cushion. */
+START_TEST(snookered_on_all_balls)
+{
+	struct hard h;
+	begin(&h, true);
+	add(&h, COLOUR_WHITE, -0.8, 0);
+	for (int i = 0; i < 6; i++)
+		add(&h, (enum ball_colour)(COLOUR_YELLOW + i), -0.65, -0.14 + 0.056 * i);
+	int red = add(&h, COLOUR_RED, 0.3, 0);
+	set_rules(&h);
+	search_with(&h, "thesis");
+	ck_assert_int_eq(best(&h)->foul, 0);
+	ck_assert_int_eq(best(&h)->target, -1);
+	ck_assert_int_eq(best(&h)->chain[1], red);
+	ck_assert_int_gt(best(&h)->rails, 0);
+	end(&h);
+}
+END_TEST
+
+/* Walled in completely: no legal shot, so the cheapest foul, and it says so. */
+START_TEST(no_legal_shot)
+{
+	struct hard h;
+	begin(&h, true);
+	add(&h, COLOUR_WHITE, 0, 0);
+	for (int i = 0; i < 7; i++) {
+		double a = 2 * M_PI * i / 7, r = 0.062;
+		add(&h, i < 6 ? (enum ball_colour)(COLOUR_YELLOW + i) : COLOUR_UNKNOWN, r * cos(a), r * sin(a));
+	}
+	add(&h, COLOUR_RED, 0.7, 0.3);
+	set_rules(&h);
+	search_with(&h, "thesis");
+	ck_assert_int_eq(h.result.status, PLAN_OK);
+	ck_assert_int_eq(best(&h)->target, -1);
+	ck_assert_int_gt(best(&h)->foul, 0);
+	end(&h);
+}
+END_TEST
+
+START_TEST(pocket_blocked_by_another_ball)
+{
+	struct hard h;
+	begin(&h, true);
+	int pocket = table_pocket(&h.table, "TOP-RIGHT");
+	vec2 p = h.table.pocket[pocket].centre;
+	add(&h, COLOUR_WHITE, 0.2, 0);
+	int red = add(&h, COLOUR_RED, 0.6, 0.2);
+	add(&h, COLOUR_BLACK, p.x - 0.06, p.y - 0.05);
+	set_rules(&h);
+	search_with(&h, "thesis");
+	ck_assert(!proposes(&h, red, pocket));
+	end(&h);
+}
+END_TEST
+
+START_TEST(target_in_the_jaws)
+{
+	static const char *const name[] = {"thesis", "real"};
+	struct hard h;
+	begin(&h, false);
+	int pocket = table_pocket(&h.table, "TOP-RIGHT");
+	vec2 p = h.table.pocket[pocket].centre;
+	vec2 in = vec2_madd(p, h.table.pocket[pocket].radius + 0.03, h.table.pocket[pocket].normal);
+	add(&h, COLOUR_WHITE, 1.2, 0.3);
+	int red = add(&h, COLOUR_RED, in.x, in.y);
+	set_rules(&h);
+	search_with(&h, name[_i]);
+	ck_assert(proposes(&h, red, pocket));
+	end(&h);
+}
+END_TEST
+
+/* The cue ball comes to lie in the D, free, wherever it lay. */
+START_TEST(cue_ball_in_hand)
+{
+	struct hard h;
+	begin(&h, _i == 0);
+	add(&h, COLOUR_WHITE, 0.3, 0.3);
+	add(&h, COLOUR_RED, -0.2, -0.1);
+	add(&h, COLOUR_BLUE, -0.1, 0.2);
+	if (_i == 1)
+		h.ball[0].phase = BALL_POTTED;
+	set_rules(&h);
+	h.request.state.in_hand = true;
+	search_with(&h, "thesis");
+	vec2 cue = best(&h)->start[0].pos;
+	ck_assert(vec2_dist(cue, h.table.baulk_d_centre) <= h.table.baulk_d_radius + 1e-9);
+	ck_assert(cue.x <= h.table.baulk_d_centre.x + 1e-9);
+	ck_assert_int_eq(best(&h)->start[0].phase, BALL_REST);
+	/* better than from its middle, or as good */
+	double cost = h.result.plan[0].cost;
+	planner_destroy(h.planner);
+	h.request.state.in_hand = false;
+	h.request.ball[0] = ball_at(COLOUR_WHITE, h.table.baulk_d_centre);
+	search_with(&h, "thesis");
+	ck_assert(best(&h)->target < 0 || cost <= h.result.plan[0].cost);
+	end(&h);
+}
+END_TEST
+
+START_TEST(opening_break)
+{
+	struct hard h;
+	begin(&h, _i == 0);
+	h.count = SCENE_RACK_COUNT;
+	scene_rack(&h.table, h.ball);
+	set_rules(&h);
+	search_with(&h, "simple");
+	ck_assert_int_eq(best(&h)->foul, 0);
+	ck_assert_int_eq(h.ball[best(&h)->chain[1]].colour, COLOUR_RED);
+	end(&h);
+}
+END_TEST
+
+/* Positions mirrored at the table's long axis: the same costs, angles of the other sign. */
+START_TEST(mirrored_tables)
+{
+	struct random random = random_begin("mirrored_tables");
+	for (int n = 0; n < 20; n++) {
+		struct hard a, b;
+		begin(&a, false);
+		begin(&b, false);
+		a.count = b.count = 7;
+		scene_random(&random, &a.table, 0.05, a.ball, a.count);
+		for (int i = 0; i < a.count; i++) {
+			b.ball[i] = a.ball[i];
+			b.ball[i].pos.y = -a.ball[i].pos.y;
+		}
+		set_rules(&a);
+		set_rules(&b);
+		a.request.target = b.request.target = TARGET_ANY;
+		a.request.rails = b.request.rails = 1;
+		search_with(&a, "thesis");
+		search_with(&b, "thesis");
+		/* what meets many balls is chaotic: the first are compared */
+		int first = a.result.plan_count < 3 ? a.result.plan_count : 3;
+		for (int i = 0; i < first; i++) {
+			const struct plan_shot *left = &a.result.plan[i].shot[0], *right = &b.result.plan[i].shot[0];
+			ck_assert_double_eq_tol(a.result.plan[i].cost, b.result.plan[i].cost, 1e-9);
+			ck_assert(fabs(remainder(left->shot.angle + right->shot.angle, 2 * M_PI)) < 1e-9);
+			ck_assert_int_eq(left->target, right->target);
+		}
+		end(&a);
+		end(&b);
+	}
+}
+END_TEST
+
+/* ---- requests that are refused --------------------------------------------------------------------------------------- */
+
+static void refused(const struct hard *hard, const char *word)
+{
+	char err[200] = "";
+	ck_assert_int_eq(plan_request_check(&hard->table, &hard->request, err, sizeof err), -EINVAL);
+	ck_assert_msg(strstr(err, word) != NULL, "\"%s\" does not say \"%s\"", err, word);
+	/* the planner refuses it, too, and leaves the result alone */
+	struct planner *planner = scene_planner(&hard->table, "thesis", NULL, 1);
+	struct plan_result result = {.plan_count = 77};
+	ck_assert_int_eq(planner_run(planner, &hard->request, NULL, NULL, &result, err, sizeof err), -EINVAL);
+	ck_assert_int_eq(result.plan_count, 77);
+	planner_destroy(planner);
+}
+
+static void usual(struct hard *hard)
+{
+	char err[200];
+	begin(hard, true);
+	add(hard, COLOUR_WHITE, -0.5, 0);
+	add(hard, COLOUR_RED, 0.2, 0.1);
+	add(hard, COLOUR_BLACK, 0.5, 0.1);
+	set_rules(hard);
+	ck_assert_int_eq(plan_request_check(&hard->table, &hard->request, err, sizeof err), 0);
+}
+
+START_TEST(bad_balls)
+{
+	struct hard h;
+	usual(&h);
+	h.request.ball[2].pos = vec2_add(h.request.ball[1].pos, (vec2){0.01, 0});
+	refused(&h, "");
+	usual(&h);
+	h.request.ball[1].colour = COLOUR_WHITE;
+	refused(&h, "both white");
+	usual(&h);
+	h.request.ball[0].colour = COLOUR_RED;
+	refused(&h, "no white");
+	usual(&h);
+	h.request.ball[0].phase = BALL_POTTED;
+	refused(&h, "no white");
+	usual(&h);
+	h.request.ball[1].colour = COLOUR_COUNT;
+	refused(&h, "ball 1");
+	usual(&h);
+	h.request.ball[1].phase = BALL_ROLLING;
+	refused(&h, "not at rest");
+	usual(&h);
+	h.request.ball[1].pos.x = 5;
+	refused(&h, "");
+	usual(&h);
+	h.request.ball[1].pos.y = NAN;
+	refused(&h, "");
+	usual(&h);
+	h.request.ball[2].pos.x = INFINITY;
+	refused(&h, "");
+}
+END_TEST
+
+START_TEST(bad_fields)
+{
+	struct hard h;
+	usual(&h);
+	h.request.ball_count = 23;
+	refused(&h, "ball_count");
+	usual(&h);
+	h.request.ball_count = 0;
+	refused(&h, "ball_count");
+	usual(&h);
+	h.request.depth = 50;
+	refused(&h, "depth");
+	usual(&h);
+	h.request.rails = 4;
+	refused(&h, "rails");
+	usual(&h);
+	h.request.balls = 0;
+	refused(&h, "balls");
+	usual(&h);
+	h.request.plans = 0;
+	refused(&h, "plans");
+	usual(&h);
+	h.request.speeds = -1;
+	refused(&h, "speeds");
+	usual(&h);
+	h.request.budget.seconds = NAN;
+	refused(&h, "budget");
+	usual(&h);
+	h.request.budget.seconds = -1;
+	refused(&h, "budget");
+}
+END_TEST
+
+START_TEST(bad_targets)
+{
+	struct hard h;
+	usual(&h);
+	h.request.target = TARGET_BALL;
+	h.request.target_ball = 3;
+	refused(&h, "target ball 3");
+	h.request.target_ball = 0;
+	refused(&h, "target ball 0");
+	h.request.target_ball = -1;
+	refused(&h, "target ball -1");
+	usual(&h);
+	h.request.target = TARGET_COLOUR;
+	h.request.target_colour = COLOUR_PINK;
+	refused(&h, "PINK");
+	h.request.target_colour = COLOUR_WHITE;
+	refused(&h, "WHITE");
+}
+END_TEST
+
+/* A zero budget is none; a tiny one still gives an answer. */
+START_TEST(tiny_budgets)
+{
+	struct hard h;
+	usual(&h);
+	for (uint64_t nodes = 1; nodes < 20; nodes++) {
+		h.request.budget.nodes = nodes;
+		search_with(&h, "thesis");
+		ck_assert_int_eq(h.result.status, PLAN_OK);
+		end(&h);
+	}
+	h.request.budget.nodes = 0;
+	search_with(&h, "thesis");
+	ck_assert(h.result.exhausted);
+	end(&h);
+}
+END_TEST
+
+START_TEST(only_the_cue_ball)
+{
+	struct hard h;
+	begin(&h, true);
+	add(&h, COLOUR_WHITE, 0, 0);
+	h.request = scene_request(h.ball, 1);
+	h.planner = scene_planner(&h.table, "thesis", NULL, 1);
+	h.result = scene_run(h.planner, &h.request);
+	ck_assert_int_eq(h.result.status, PLAN_NONE);
+	ck_assert_int_eq(h.result.plan_count, 0);
+	end(&h);
+}
+END_TEST
+
+Suite *test_suite(void)
+{
+	Suite *suite = suite_create("plan_hard");
+	TCase *tc = tcase_create("cases");
+	tcase_set_timeout(tc, 60);
+	tcase_add_test(tc, no_red_left);
+	tcase_add_test(tc, two_colours_left_on_their_spots);
+	tcase_add_test(tc, one_ball_left);
+	tcase_add_test(tc, cue_ball_frozen_to_a_ball);
+	tcase_add_test(tc, cue_ball_frozen_to_a_cushion);
+	tcase_add_test(tc, object_ball_frozen_to_the_cushion);
+	tcase_add_test(tc, snookered_on_all_balls);
+	tcase_add_test(tc, no_legal_shot);
+	tcase_add_test(tc, pocket_blocked_by_another_ball);
+	tcase_add_loop_test(tc, target_in_the_jaws, 0, 2);
+	tcase_add_loop_test(tc, cue_ball_in_hand, 0, 2);
+	tcase_add_loop_test(tc, opening_break, 0, 2);
+	tcase_add_test(tc, mirrored_tables);
+	suite_add_tcase(suite, tc);
+	tc = tcase_create("requests");
+	tcase_add_test(tc, bad_balls);
+	tcase_add_test(tc, bad_fields);
+	tcase_add_test(tc, bad_targets);
+	tcase_add_test(tc, tiny_budgets);
+	tcase_add_test(tc, only_the_cue_ball);
+	suite_add_tcase(suite, tc);
+	return suite;
+}
