@@ -34,11 +34,11 @@ TESTS := fsm stability plan_message controller planner_service \
 	config position cmd plot draw render player table_camera contact_real contact_recorded shot_file \
 	rules cost geometry frontier pool scheme candidate plan plan_thesis plan_hard \
 	ball detect event inverse model motion queue roots sim sim_hard table trace
-TEST_SHARED := harness poly_judge scenes search_scenes shot_compare
+TEST_SHARED := harness random poly_judge scenes search_scenes shot_compare
 # tests that are scripts: tests/NAME.sh, called with the build folder
 TEST_SCRIPTS := cli
 # bench/bench_NAME.c each; bench/NAME.c shared by them
-BENCHES := physics accuracy
+BENCHES := physics accuracy planner
 # bench/eval_NAME.c each: accuracy on recorded data
 EVALS := physics
 BENCH_SHARED := report plain_sim plain_sim_long
@@ -81,7 +81,7 @@ ARCHIVES := $(BUILD)/libapp.a $(BUILD)/liblcmtypes.a $(BUILD)/libsearch.a $(BUIL
 PROGRAM_BINS := $(addprefix $(BUILD)/,$(PROGRAMS))
 TEST_BINS := $(patsubst %,$(BUILD)/tests/test_%,$(TESTS))
 FUZZ_BINS := $(patsubst %,$(BUILD)/fuzz_%,$(FUZZERS))
-BENCH_SHARED_O := $(call obj,bench,$(BENCH_SHARED)) $(call obj,tests,scenes shot_compare)
+BENCH_SHARED_O := $(call obj,bench,$(BENCH_SHARED)) $(call obj,tests,random scenes search_scenes shot_compare)
 EVAL_BINS := $(patsubst %,$(BUILD)/bench/eval_%,$(EVALS))
 BENCH_BINS := $(patsubst %,$(BUILD)/bench/bench_%,$(BENCHES))
 
