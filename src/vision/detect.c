@@ -6,6 +6,8 @@
 static const double EDGE_SLACK = 0.007;		/* m a fitted centre may lie beyond where cushions let it be */
 static const double MOUTH_INNER = 0.8;		/* of a pocket's radius: nearer to its centre a ball has fallen */
 static const double SUPPORT_SEED = 0.48, SUPPORT_PACKED = 0.33, SUPPORT_MIN = 0.62;
+enum { ROUNDS = 3 };
+static const double SUPPORT_ROUGH = 0.17;	/* less in the first round */
 static const double SUPPORT_CROWDED = 0.5, RING_FREE = 0.3;	/* more of it is wanted where it lies among other foreign things */
 static const double COVER_MIN = 0.55;
 static const double SCALE_MIN = 0.86, SCALE_MAX = 1.085;
@@ -194,13 +196,13 @@ static void try_packed(struct detector *d, struct fit_view *view)
 	view->other_count = 0;
 }
 
-static enum refusal judge(const struct detector *d, const struct candidate *c)
+static enum refusal judge(const struct detector *d, const struct candidate *c, double relief)
 {
 	if (!detect_possible(d->table, c->fit.pos))
 		return REFUSED_PLACE;
 	if (c->cover < COVER_MIN)
 		return REFUSED_INSIDE;
-	if (c->fit.support < SUPPORT_MIN + SUPPORT_CROWDED * fmax(0, c->ring - RING_FREE))
+	if (c->fit.support < SUPPORT_MIN - relief + SUPPORT_CROWDED * fmax(0, c->ring - RING_FREE))
 		return REFUSED_RIM;
 	if (c->fit.scale < SCALE_MIN || c->fit.scale > SCALE_MAX)
 		return REFUSED_SIZE;
@@ -330,6 +332,20 @@ static void push_apart(struct detector *d, int sweeps)
 			}
 }
 
+/* relief: how much less rim than usual is enough. */
+static void judge_all(struct detector *d, double relief)
+{
+	for (int i = 0; i < d->count; i++) {
+		struct candidate *c = &d->candidate[i];
+		if (c->fixed)
+			continue;
+		look_around(d, c, true);
+		c->refusal = judge(d, c, relief);
+		c->confidence = c->fit.support * c->cover;
+	}
+	drop_refused(d);
+}
+
 /* Rounds of fitting, since every ball's hidden rim depends on its neighbours; then judgement. */
 static void settle(struct detector *d, struct fit_view *view)
 {
@@ -338,33 +354,26 @@ static void settle(struct detector *d, struct fit_view *view)
 		all_fixed = all_fixed && d->candidate[i].fixed;
 	if (all_fixed)
 		return;
-	for (int round = 0; round < 3; round++) {
+	for (int round = 0; round < ROUNDS; round++) {
+		if (round > 0)
+			push_apart(d, 4);
 		look(d, view->frame);
 		expect_scales(d);
 		find_alone(d);
 		fit_together(d, view, round, 2);
 		refuse_overlaps(d);
 		drop_refused(d);
-		push_apart(d, 4);
-		if (round < 2)
+		/* What is no ball must neither hide nor push one; in the first round rims are still badly known. */
+		judge_all(d, round == 0 ? SUPPORT_ROUGH : 0);
+		if (round + 1 < ROUNDS)
 			try_packed(d, view);
 	}
 	look(d, view->frame);
-	for (int i = 0; i < d->count; i++) {
-		struct candidate *c = &d->candidate[i];
-		if (c->fixed)
-			continue;
-		look_around(d, c, true);
-		c->refusal = judge(d, c);
-		c->confidence = c->fit.support * c->cover;
-	}
-	drop_refused(d);
 	push_apart(d, 20);
 	for (int i = 0; i < d->count; i++) {
 		struct fit *fit = &d->candidate[i].fit;
-		if (d->candidate[i].fixed)
-			continue;
-		outline_of_ball(view->camera, fit->pos, view->radius, fit->scale, &fit->outline);
+		if (!d->candidate[i].fixed)
+			outline_of_ball(view->camera, fit->pos, view->radius, fit->scale, &fit->outline);
 	}
 }
 

@@ -12,7 +12,7 @@ static const double CONTRAST_FULL = 40;
 /* How far an edge usually lies off, px; edges side by side err alike, so each counts less than its own noise would say. */
 static const double EDGE_PX = 0.9;
 /* In a crease between balls the own dark limb belongs to the outside: the edge is seen this far inside of the rim. */
-static const double CREASE_PX = -0.5, CREASE_SPREAD_PX = 0.8;
+static const double CREASE_PX = -0.5, CREASE_SPREAD_PX = 0.8, CREASE_REACH = 1.5;
 static const float CREASE_CHROMA2 = 0.16f * 0.16f, CREASE_SHADE = 0.33f;
 static const double EDGES_MIN = 0.3;		/* share of open rays with any edge at all */
 static const double EXPLAINED_MIN = 0.3;		/* share of them that one outline explains */
@@ -20,7 +20,7 @@ static const double SUPPORT_PX = 1.1;		/* an edge this near is where it should b
 
 struct edge {
 	bool hidden, found;
-	bool crease;		/* the outside is no cloth: a neighbour, its dark foot, a pocket */
+	bool crease;		/* between two balls: the outside is no cloth but a neighbour or its dark foot */
 	double offset;		/* px along the normal, outwards */
 	double weight;
 	double contrast;
@@ -104,17 +104,17 @@ static bool profile(const struct image *im, const struct ray *ray, const float c
 	return true;
 }
 
-static bool hidden_by_neighbour(const struct fit_view *view, const struct fit *self, vec2 p)
+/* Distance from the nearest neighbour's middle over its radius, at an image point. */
+static double nearest_neighbour(const struct fit_view *view, const struct fit *self, vec2 p)
 {
+	double nearest = INFINITY;
 	for (int i = 0; i < view->other_count; i++) {
 		const struct fit *o = &view->other[i];
-		if (o == self || vec2_dist(o->pos, self->pos) > 3 * view->radius ||
-		    vec2_dist(o->pos, self->pos) < 0.5 * view->radius)
-			continue;
-		if (vec2_dist(p, o->outline.centre) < o->outline.radius_px)
-			return true;
+		double apart = vec2_dist(o->pos, self->pos);
+		if (o != self && apart > 0.5 * view->radius && apart < 3.5 * view->radius)
+			nearest = fmin(nearest, vec2_dist(p, o->outline.centre) / o->outline.radius_px);
 	}
-	return false;
+	return nearest;
 }
 
 static void find_edges(const struct fit_view *view, struct fit *fit, int reach, struct edge edge[OUTLINE_POINTS])
@@ -126,11 +126,13 @@ static void find_edges(const struct fit_view *view, struct fit *fit, int reach, 
 		struct ray ray = {p, n, reach, step};
 		double at;
 		edge[i] = (struct edge){0};
-		edge[i].hidden = hidden_by_neighbour(view, fit, vec2_madd(p, 0.7 * reach * step, n));
+		double near = nearest_neighbour(view, fit, vec2_madd(p, 0.7 * reach * step, n));
+		edge[i].hidden = near < 1;
 		if (edge[i].hidden || !profile(view->frame, &ray, fit->cloth, v, &edge[i]) ||
 		    !half_crossing(v, 2 * reach + 1, &at))
 			continue;
 		edge[i].found = true;
+		edge[i].crease = edge[i].crease && near < CREASE_REACH;
 		edge[i].offset = at * step;
 		edge[i].weight = fmin(1, edge[i].contrast / CONTRAST_FULL);
 	}
