@@ -1,6 +1,7 @@
 #include "physics/collide.h"
 
 #include "physics/contact.h"
+#include "physics/contact_real.h"
 #include "physics/motion.h"
 
 /* Contacts within this time are one instant: above the rounding of a contact's time, and at 20 m/s less than 1e-10 m. */
@@ -165,6 +166,18 @@ static int most_contacts(const struct group *group)
 	return most;
 }
 
+/* Friction of the contacts, each with its own normal impulse and at most its share of the slip; all from the same state. The
+ * normal impulses have left the slips as they were but for what one contact's normal is to another's tangent. */
+static void rub_joints(const struct table *table, const struct joint *joint, int count, double share)
+{
+	vec2 impulse[GROUP_MAX];
+	double approach = 2 / (1 + table->material.e_ball);
+	for (int i = 0; i < count; i++)
+		impulse[i] = contact_ball_friction(table, joint[i].a, joint[i].b, approach * joint[i].impulse, share);
+	for (int i = 0; i < count; i++)
+		contact_ball_rub(table, impulse[i], joint[i].a, joint[i].b);
+}
+
 static void collide_jointly(struct sim *sim, const struct group *group)
 {
 	const struct table *table = sim->table;
@@ -181,7 +194,10 @@ static void collide_jointly(struct sim *sim, const struct group *group)
 		joint[i] = (struct joint){a, b, n, restitution * fmax(approach, 0), 0, 0};
 		speed = fmax(speed, approach);
 	}
-	solve_joints(joint, group->count, 1.0 / most_contacts(group), speed);
+	double share = 1.0 / most_contacts(group);
+	solve_joints(joint, group->count, share, speed);
+	if (sim->model.ball == BALL_MODEL_FRICTIONAL)
+		rub_joints(table, joint, group->count, share);
 	for (int i = 0; i < sim->ball_count; i++) {
 		if (!(group->balls >> i & 1))
 			continue;

@@ -11,6 +11,13 @@
  * velocity, which the cloth and gravity take up at once, is dropped. Precondition: the balls approach (asserted). */
 void contact_ball_frictional(const struct table *table, struct ball *a, struct ball *b);
 
+/* The friction of the same law alone, for contacts that are solved together: impulse per mass (m/s, across the line of
+ * centres and upward) at a contact whose normal impulse is that of the approach speed, at most what ends the share of
+ * the slip; and what such an impulse does to the balls. Normal velocities stay. */
+vec2 contact_ball_friction(const struct table *table, const struct ball *a, const struct ball *b, double approach,
+			   double share);
+void contact_ball_rub(const struct table *table, vec2 impulse, struct ball *a, struct ball *b);
+
 /* Compliant impact on a cushion (Stronge 2000, ch. 5): normal and tangential springs with frequency ratio stronge_omega
  * in (1, 2), restitution e_cushion > 1 / stronge_omega, Coulomb friction mu_cushion; outside of these ranges the spring
  * is taken as stiff. normal: unit, from the cushion towards the ball. The contact lies on the line from the ball's
