@@ -222,26 +222,37 @@ static double unlike(const struct candidate *a, const struct candidate *b)
 	return sqrt(sum);
 }
 
+/* Median apparent radius of clear balls that look like one; returns how many there are. */
+static int scale_of_like(const struct detector *d, int i, const enum ball_colour class[DETECT_MAX], double *median)
+{
+	double like[DETECT_MAX];
+	int n = 0;
+	for (int j = 0; j < d->count; j++) {
+		const struct candidate *o = &d->candidate[j];
+		if (!is_clear(o) || class[j] != class[i] || unlike(&d->candidate[i], o) > LIKE_DISTANCE)
+			continue;
+		int at = n++;
+		for (; at > 0 && like[at - 1] > o->fit.scale; at--)
+			like[at] = like[at - 1];
+		like[at] = o->fit.scale;
+	}
+	*median = n > 0 ? like[n / 2] : USUAL_SCALE;
+	return n;
+}
+
 /* Balls that look the same have the same apparent radius: whole rims tell it to those that are half hidden. */
 static void expect_scales(struct detector *d)
 {
+	enum ball_colour class[DETECT_MAX];
+	for (int i = 0; i < d->count; i++)
+		class[i] = d->colours ? colour_likeliest(d->colours, &d->candidate[i].look) : COLOUR_UNKNOWN;
 	for (int i = 0; i < d->count; i++) {
-		double like[DETECT_MAX];
-		int n = 0;
-		for (int j = 0; j < d->count; j++) {
-			const struct candidate *o = &d->candidate[j];
-			if (!is_clear(o) || unlike(&d->candidate[i], o) > LIKE_DISTANCE)
-				continue;
-			int at = n++;
-			for (; at > 0 && like[at - 1] > o->fit.scale; at--)
-				like[at] = like[at - 1];
-			like[at] = o->fit.scale;
-		}
 		struct fit *fit = &d->candidate[i].fit;
-		enum ball_colour class = d->colours ? colour_likeliest(d->colours, &d->candidate[i].look) : COLOUR_UNKNOWN;
-		bool known = class != COLOUR_UNKNOWN;
-		fit->expected_scale = n > 1 ? like[n / 2] : known ? d->colours->scale[class] : USUAL_SCALE;
-		fit->scale_spread = n > 1 ? LIKE_SPREAD : known ? d->colours->scale_spread[class] : USUAL_SPREAD;
+		double median;
+		int like = scale_of_like(d, i, class, &median);
+		bool known = class[i] != COLOUR_UNKNOWN;
+		fit->expected_scale = like > 1 ? median : known ? d->colours->scale[class[i]] : USUAL_SCALE;
+		fit->scale_spread = like > 1 ? LIKE_SPREAD : known ? d->colours->scale_spread[class[i]] : USUAL_SPREAD;
 	}
 }
 

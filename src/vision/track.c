@@ -12,6 +12,7 @@ enum {
 };
 static const double NOISE_PX = 0.12;		/* a resting ball trembles by, at 15.5 px radius */
 static const double FASTEST = 9;		/* m/s; no ball is faster */
+static const double CONFIRM_SUPPORT = 0.78, CONFIRM_BEND = 0.3;	/* radii */
 static const double LOOK_DISTANCE = 1.2;	/* features further apart are another ball's */
 static const double COVERED_SHARE = 0.35;
 
@@ -42,6 +43,16 @@ static void learn_look(struct track *k, const struct colour_feature *look)
 		k->look.v[i] += (look->v[i] - k->look.v[i]) / k->looks;
 }
 
+/* Three places in a row on a line, evenly spaced: chance finds on an arm jump about. */
+static bool moves_like_a_ball(const struct tracker *t, const struct track *k)
+{
+	const vec2 *raw = k->steady.raw;
+	if (k->steady.raw_count < 3)
+		return false;
+	vec2 bend = vec2_add(vec2_madd(raw[0], -2, raw[1]), raw[2]);
+	return k->seen.fit.support > CONFIRM_SUPPORT && vec2_norm(bend) < CONFIRM_BEND * t->detector->table->ball_radius;
+}
+
 static void update(struct tracker *t, struct track *k, const struct candidate *c)
 {
 	double metres_per_px = t->detector->table->ball_radius / c->fit.outline.radius_px;
@@ -49,12 +60,12 @@ static void update(struct tracker *t, struct track *k, const struct candidate *c
 	k->age++;
 	k->misses = 0;
 	k->seen_time = t->time;
-	k->confirmed = k->confirmed || k->age >= CONFIRM_FRAMES;
 	if (c->fixed)
 		return;
 	k->seen = *c;
 	stabilise_add(&k->steady, c->fit.pos, t->time, noise);
 	learn_look(k, &c->look);
+	k->confirmed = k->confirmed || (k->age >= CONFIRM_FRAMES && moves_like_a_ball(t, k));
 }
 
 static void start(struct tracker *t, const struct candidate *c, bool confirmed)
@@ -90,7 +101,10 @@ static vec2 predicted(const struct track *k, double time)
 /* How badly a new candidate fits a track that was not found where it was; infinite when it cannot be it. */
 static double mismatch(const struct tracker *t, const struct track *k, const struct candidate *c)
 {
-	double reach = 2 * t->detector->table->ball_radius + FASTEST * fmin(t->time - k->seen_time, 0.15);
+	double reach = 2 * t->detector->table->ball_radius;
+	/* What is not yet known to be a ball has no claim to things far away. */
+	if (k->confirmed)
+		reach += FASTEST * fmin(t->time - k->seen_time, 0.15);
 	double far = vec2_dist(predicted(k, t->time), c->fit.pos), other = unlike(&k->look, &c->look);
 	return far < reach && other < LOOK_DISTANCE ? far / reach + 0.5 * other / LOOK_DISTANCE : INFINITY;
 }
