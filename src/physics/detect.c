@@ -233,10 +233,11 @@ static void try_cushion(struct path *path, int index)
 	if (fabs(d[2]) <= ROUNDING * vec2_norm(path->a))
 		d[2] = 0;
 	bool unbounded = path->model->pocket == POCKET_MODEL_NONE;
-	if (!unbounded && d[0] < -radius)
+	bool behind = !unbounded && d[0] < -radius;
+	if (behind && d[2] >= 0) /* only a bent way leads out from behind the line and in again */
 		return;
 	path->count->quadratic++;
-	bool beside = d[0] < 0 && !unbounded && foot_excess(path, c, 0) > 0;
+	bool beside = behind || (d[0] < 0 && !unbounded && foot_excess(path, c, 0) > 0);
 	double t = beside ? later_entry(d, path->horizon) : roots_quadratic_entry(d[0], d[1], d[2], path->horizon);
 	double excess = t < INFINITY ? foot_excess(path, c, t) : 0;
 	if (t < INFINITY && (excess == 0 || unbounded))
