@@ -13,7 +13,8 @@
 #include "report.h"
 #include "scenes.h"
 
-enum { SHOTS = 150, EVENTS = 40, BALLS = 8 };
+/* SPARE: events after the reference's last, to tell one that comes early from one that is left out. */
+enum { SHOTS = 150, EVENTS = 40, BALLS = 8, SPARE = 3 };
 
 /* ---- solvers
  * --------------------------------------------------------------------------------------------------------------- */
@@ -98,8 +99,8 @@ struct shots {
 	struct model model;
 	struct ball ball[SHOTS][BALL_MAX];
 	int count[SHOTS];
-	struct plain_event reference[SHOTS][EVENTS], log[EVENTS];
-	int events[SHOTS];
+	struct plain_event reference[SHOTS][EVENTS], log[EVENTS + SPARE];
+	int events[SHOTS], most;	   /* events of the reference, cut at most */
 	const struct plain_solver *solver; /* NULL: this project's engine */
 	struct sim sim;
 	int current;
@@ -166,7 +167,7 @@ static int play_engine(struct shots *s, int shot)
 	struct event event;
 	int n = 0;
 	sim_init(&s->sim, &s->table, &s->model, s->ball[shot], s->count[shot]);
-	while (n < s->events[shot] && sim_step(&s->sim, &event)) {
+	while (n < s->events[shot] + SPARE && sim_step(&s->sim, &event)) {
 		s->log[n].event = event;
 		s->log[n].pos[0] = s->log[n].pos[1] = sim_ball(&s->sim, event.ball).pos;
 		if (event.kind == EVENT_BALL_BALL)
@@ -180,7 +181,8 @@ static int play_one(struct shots *s, int shot)
 {
 	if (!s->solver)
 		return play_engine(s, shot);
-	return plain_run(&s->table, &s->model, s->ball[shot], s->count[shot], s->solver, s->log, s->events[shot]);
+	return plain_run(&s->table, &s->model, s->ball[shot], s->count[shot], s->solver, s->log,
+			 s->events[shot] + SPARE);
 }
 
 static void play_all(void *context)
@@ -230,7 +232,7 @@ static void compare_shot(struct shots *s, int shot, struct outcome *o)
 	int n = play_one(s, shot), want = s->events[shot];
 	const struct plain_event *reference = s->reference[shot];
 	struct plain_event *log = s->log;
-	for (int i = 0; i < want || i < n; i++) {
+	for (int i = 0; i < want || (i < n && want < s->most); i++) {
 		if (i < n && i < want && !is_same(&reference[i].event, &log[i].event))
 			settle_tie(&reference[i].event, log, i, n);
 		if (i >= n || i >= want || !is_same(&reference[i].event, &log[i].event)) {
@@ -260,11 +262,11 @@ static void measure(struct shots *s, FILE *csv, const char *family, const char *
 	fflush(stdout);
 }
 
-static void measure_family(struct shots *s, FILE *csv, const char *family)
+static void measure_family(struct shots *s, FILE *csv, const char *family, int most)
 {
 	for (int i = 0; i < SHOTS; i++)
 		s->events[i] =
-			plain_run_long(&s->table, &s->model, s->ball[i], s->count[i], NULL, s->reference[i], EVENTS);
+			plain_run_long(&s->table, &s->model, s->ball[i], s->count[i], NULL, s->reference[i], most);
 	const double tolerance[] = {1e-3, 1e-6, 1e-9, 1e-12};
 	for (size_t i = 0; i < sizeof tolerance / sizeof *tolerance; i++) {
 		measure(s, csv, family, "thesis formula", &(struct plain_solver){ferrari_entry, tolerance[i]});
@@ -284,14 +286,16 @@ static void run_families(FILE *csv)
 		model_from_name(model[m], &s.model);
 		for (int i = 0; i < SHOTS; i++)
 			scatter(&s, r, i);
-		measure_family(&s, csv, model[m]);
+		measure_family(&s, csv, model[m], EVENTS);
 		gsl_rng_free(r);
 	}
 	gsl_rng *r = gsl_rng_alloc(gsl_rng_mt19937);
 	model_from_name("simple", &s.model);
 	for (int i = 0; i < SHOTS; i++)
 		hard_pair(&s, r, i);
-	measure_family(&s, csv, "hard pairs");
+	/* The first event is the question. What a contact at 1e-5 m/s leads to is decided by how the engine keeps
+	 * pressing balls apart. */
+	measure_family(&s, csv, "hard pairs", 1);
 	gsl_rng_free(r);
 }
 

@@ -155,9 +155,9 @@ static struct plan_request long_request(const struct table *table)
 	struct plan_request request = scene_request(ball, BALL_MAX);
 	request.target = TARGET_ANY;
 	request.rails = 3;
-	request.depth = 3;
+	request.depth = 4;
 	request.speeds = 3;
-	request.plans = 100;
+	request.plans = PLAN_MAX;
 	request.budget.seconds = 1;
 	return request;
 }
@@ -166,7 +166,7 @@ static void bench_throughput(struct report *report, const struct table *table)
 {
 	static const char *const models[] = {"thesis", "real"};
 	struct plan_request request = long_request(table);
-	print_head("searches of one second, 22 balls after a break, three shots deep, three cushions");
+	print_head("searches of one second, 22 balls after a break, four shots deep, three cushions");
 	for (int m = 0; m < 2; m++)
 		for (int s = 0; s < SCHEME_COUNT; s++) {
 			struct way way = {models[m], (enum plan_scheme)s, 1, 0.1, 0.004};

@@ -10,7 +10,7 @@ set ylabel 'largest position error, m'
 set xrange [0.5:20000]
 set yrange [1e-13:50]
 set grid
-set key bottom left samplen 1
+set key bottom right samplen 1 width -2
 # 1 family, 2 solver, 3 tolerance, 4 us, 5 position error, 7 missed, 8 invented, 9 shots
 col(f, s, c) = (stringcolumn(1) eq f && stringcolumn(2) eq s) ? column(c) : NaN
 wrong(f, s) = (stringcolumn(1) eq f && stringcolumn(2) eq s && column(7) + column(8) > 0) ? sprintf('%d', column(7) + column(8)) : ''

@@ -3,8 +3,6 @@
 #ifndef BILLIARD_BENCH_REPORT_H
 #define BILLIARD_BENCH_REPORT_H
 
-#include <stdint.h>
-
 struct report;
 
 /* Opens BUILD/NAME (bench.json, eval.json); what it holds already is kept. Ends the program with a message when there
@@ -15,11 +13,8 @@ void report_number(struct report *report, const char *name, double value, const 
 /* Writes the file and frees. 0, or -1 after a message on stderr. */
 int report_close(struct report *report);
 
-/* Monotonic, in ns. */
-uint64_t bench_now(void);
-
-/* Runs run(context) again and again: as often as fills about 20 ms, that 15 times over; the least mean time of a run in
- * ns (other load on the machine only ever adds). */
+/* Runs run(context) again and again: as often as fills about 8 ms, that 30 times over; the least mean time of a run in
+ * ns of this thread's CPU time (other load on the machine only ever adds). */
 double bench_time(void (*run)(void *context), void *context);
 
 #endif
