@@ -1,0 +1,232 @@
+/* Contact laws of the thesis and of the simple models, and contacts that are solved together. */
+#include "harness.h"
+#include "scenes.h"
+
+#include <math.h>
+
+#include "physics/collide.h"
+#include "physics/contact.h"
+#include "physics/inverse.h"
+#include "physics/motion.h"
+#include "physics/sim.h"
+
+static struct model model_named(const char *name)
+{
+	struct model model;
+	ck_assert(model_from_name(name, &model));
+	return model;
+}
+
+static struct ball moving(vec2 pos, vec2 vel, enum ball_phase phase, const struct table *table)
+{
+	struct ball b = ball_at(COLOUR_RED, pos);
+	b.vel = vel;
+	b.phase = phase;
+	if (phase == BALL_ROLLING)
+		motion_roll(&b, table);
+	return b;
+}
+
+/* Touching, approaching, in any phases. */
+static void random_pair(struct random *r, const struct table *table, struct ball *a, struct ball *b)
+{
+	do {
+		vec2 n = vec2_from_angle(random_in(r, -M_PI, M_PI));
+		*a = moving((vec2){0, 0}, (vec2){random_in(r, -3, 3), random_in(r, -3, 3)},
+			    random_u64(r) & 1 ? BALL_ROLLING : BALL_SLIDING, table);
+		*b = ball_at(COLOUR_RED, (vec2){0, 0});
+		if (random_u64(r) & 1)
+			*b = moving(b->pos, (vec2){random_in(r, -3, 3), random_in(r, -3, 3)}, BALL_ROLLING, table);
+		b->pos = vec2_scale(n, 2 * table->ball_radius);
+	} while (vec2_dot(vec2_sub(a->vel, b->vel), b->pos) <= 0);
+}
+
+static vec2 momentum(const struct ball *a, const struct ball *b)
+{
+	return vec2_add(a->vel, b->vel);
+}
+
+START_TEST(simple_keeps_momentum_and_separates)
+{
+	struct table table = scene_thesis_table();
+	struct random r = random_begin("simple_keeps_momentum_and_separates");
+	const char *const names[] = {"simple-elastic", "simple"};
+	for (int i = 0; i < 20000; i++) {
+		struct model model = model_named(names[i & 1]);
+		double e = contact_restitution(&table, &model);
+		struct ball a, b;
+		random_pair(&r, &table, &a, &b);
+		vec2 n = vec2_unit(b.pos), before = momentum(&a, &b);
+		double approach = vec2_dot(vec2_sub(a.vel, b.vel), n), energy = vec2_norm2(a.vel) + vec2_norm2(b.vel);
+		double spin = a.spin[0];
+		contact_balls(&table, &model, &a, &b);
+		ck_assert_double_le(vec2_dist(momentum(&a, &b), before), 1e-14);
+		ck_assert_double_eq_tol(vec2_dot(vec2_sub(b.vel, a.vel), n), e * approach, 1e-14);
+		double loss = 0.5 * (1 - e * e) * approach * approach;
+		ck_assert_double_eq_tol(vec2_norm2(a.vel) + vec2_norm2(b.vel), energy - loss, 1e-13);
+		ck_assert(a.spin[0] == spin);
+	}
+}
+END_TEST
+
+/* 4.43 to 4.55 without topspin: a sliding ball on a resting one. */
+START_TEST(thesis_without_topspin)
+{
+	struct table table = scene_thesis_table();
+	struct model model = model_named("thesis");
+	struct random r = random_begin("thesis_without_topspin");
+	for (int i = 0; i < 5000; i++) {
+		double v = random_in(&r, 0.1, 5), cut = random_in(&r, -1.5, 1.5);
+		struct ball a = moving((vec2){0, 0}, (vec2){v, 0}, BALL_SLIDING, &table);
+		struct ball b = ball_at(COLOUR_RED, vec2_scale(vec2_from_angle(cut), 2 * table.ball_radius));
+		contact_balls(&table, &model, &a, &b);
+		ck_assert_double_eq_tol(vec2_norm(b.vel), hit_forward(&table, v, cos(cut)), 1e-14);
+		ck_assert_double_eq_tol(vec2_norm(a.vel), v * fabs(sin(cut)) * (1 - table.material.loss_ball), 1e-14);
+		ck_assert_double_eq_tol(vec2_dot(a.vel, b.vel), 0, 1e-13);
+		ck_assert_int_eq(b.phase, BALL_SLIDING);
+		ck_assert(a.phase == BALL_SLIDING || vec2_norm(a.vel) < 1e-7);
+	}
+}
+END_TEST
+
+START_TEST(thesis_topspin_variants)
+{
+	struct table table = scene_thesis_table();
+	struct model model = model_named("thesis");
+	double keep = 1 - table.material.loss_ball, d = 2 * table.ball_radius;
+	for (int variant = 0; variant <= 2; variant++) {
+		table.material.topspin_variant = variant;
+		table.material.topspin_factor = variant == 1 ? 0.1 : 0.25;
+		struct ball a = moving((vec2){0, 0}, (vec2){2, 0}, BALL_ROLLING, &table);
+		struct ball b = ball_at(COLOUR_RED, (vec2){d, 0});
+		contact_balls(&table, &model, &a, &b);
+		/* full hit: all goes over; the topspin's part is what the rolling ball goes on with */
+		double want = variant == 0 ? 0 : variant == 1 ? 0.1 : 0.25 * 2 * keep;
+		ck_assert_double_eq_tol(a.vel.x, want, 1e-15);
+		ck_assert_double_eq_tol(b.vel.x, 2 * keep, 1e-15);
+		ck_assert_int_eq(a.phase, variant ? BALL_ROLLING : BALL_REST);
+		/* a sliding ball has no topspin */
+		a = moving((vec2){0, 0}, (vec2){2, 0}, BALL_SLIDING, &table);
+		b = ball_at(COLOUR_RED, (vec2){d, 0});
+		contact_balls(&table, &model, &a, &b);
+		ck_assert_double_eq(a.vel.x, 0);
+		/* thin hit: at most the incoming speed along the tangent (4.58) */
+		a = moving((vec2){0, 0}, (vec2){2, 0}, BALL_ROLLING, &table);
+		b = ball_at(COLOUR_RED, vec2_scale(vec2_from_angle(1.5), d));
+		contact_balls(&table, &model, &a, &b);
+		ck_assert_double_le(vec2_norm(a.vel), 2 * keep * (1 + 1e-15));
+	}
+}
+END_TEST
+
+START_TEST(cushions_mirror)
+{
+	struct table table = scene_thesis_table();
+	struct random r = random_begin("cushions_mirror");
+	const char *const names[] = {"simple-elastic", "simple", "thesis"};
+	for (int i = 0; i < 20000; i++) {
+		struct model model = model_named(names[i % 3]);
+		vec2 n = vec2_from_angle(random_in(&r, -M_PI, M_PI)), v = {random_in(&r, -3, 3), random_in(&r, -3, 3)};
+		if (vec2_dot(v, n) >= 0)
+			continue;
+		struct ball b = moving((vec2){0, 0}, v, BALL_SLIDING, &table);
+		contact_cushion(&table, &model, n, 0.03, &b);
+		double e = i % 3 == 1 ? table.material.e_cushion : 1, keep = i % 3 == 2 ? 1 - table.material.loss_cushion : 1;
+		ck_assert_double_eq_tol(vec2_dot(b.vel, n), -e * keep * vec2_dot(v, n), 1e-14);
+		ck_assert_double_eq_tol(vec2_cross(b.vel, n), keep * vec2_cross(v, n), 1e-14);
+		if (i % 3 == 2) {
+			ck_assert_double_eq_tol(vec2_norm(b.vel), cushion_forward(&table, vec2_norm(v)), 1e-14);
+			ck_assert_int_eq(b.phase, BALL_ROLLING);
+		} else {
+			ck_assert(b.spin[0] == 0 && b.spin[1] == 0);
+		}
+	}
+}
+END_TEST
+
+/* ---- together ---------------------------------------------------------------------------------------------------------- */
+
+/* A ball hits two that touch each other, full in the middle: the textbook's answer for elastic balls is -v/5 and
+ * 2 sqrt(3) / 5 v at 30 degrees. */
+START_TEST(one_on_two)
+{
+	struct table table = scene_box_table(3, 1.5);
+	struct model model = model_named("simple-elastic");
+	model.pocket = POCKET_MODEL_NONE;
+	double d = 2 * table.ball_radius, v = 2;
+	struct ball ball[3] = {moving((vec2){-d * sqrt(0.75) - 1e-4, 0}, (vec2){v, 0}, BALL_SLIDING, &table),
+			       ball_at(COLOUR_RED, (vec2){0, d / 2}), ball_at(COLOUR_RED, (vec2){0, -d / 2})};
+	struct sim sim;
+	sim_init(&sim, &table, &model, ball, 3);
+	struct event event;
+	do
+		ck_assert(sim_step(&sim, &event));
+	while (event.kind != EVENT_BALL_BALL);
+	double u = v - 1e-4 / v * table.material.mu_slide * table.material.gravity; /* to first order */
+	ck_assert_double_eq_tol(sim.ball[0].vel.x, -u / 5, 1e-8);
+	ck_assert_double_eq_tol(vec2_norm(sim.ball[1].vel), 2 * sqrt(3) / 5 * u, 1e-8);
+	ck_assert_double_eq_tol(sim.ball[1].vel.y / sim.ball[1].vel.x, tan(M_PI / 6), 1e-12);
+	ck_assert(sim_step(&sim, &event) && event.kind == EVENT_BALL_BALL);
+	ck_assert(event.ball == 0 && event.other == 2);
+}
+END_TEST
+
+/* Random clusters that are hit at once: momentum stays, energy never grows, every contact separates as its law says or
+ * carries no impulse. */
+START_TEST(clusters)
+{
+	struct table table = scene_box_table(3, 1.5);
+	struct random r = random_begin("clusters");
+	const char *const names[] = {"simple-elastic", "simple", "real"};
+	for (int i = 0; i < 3000; i++) {
+		struct model model = model_named(names[i % 3]);
+		model.pocket = POCKET_MODEL_NONE;
+		static struct sim sim;
+		struct ball ball[7];
+		double d = 2 * table.ball_radius;
+		struct group group = {.count = 0, .balls = 127};
+		vec2 before = {0, 0}, after = {0, 0};
+		for (int k = 0; k < 7; k++) {
+			vec2 at = k == 0 ? (vec2){0, 0} : vec2_scale(vec2_from_angle((k - 1) * M_PI / 3), d);
+			ball[k] = ball_at(COLOUR_RED, at);
+		}
+		sim_init(&sim, &table, &model, ball, 7);
+		for (int k = 0; k < 7; k++) {
+			sim.ball[k].vel = (vec2){random_in(&r, -2, 2), random_in(&r, -2, 2)};
+			sim.ball[k].phase = BALL_SLIDING;
+			before = vec2_add(before, sim.ball[k].vel);
+			for (int m = 0; m < k; m++) {
+				vec2 n = vec2_sub(ball[k].pos, ball[m].pos);
+				if (vec2_norm(n) < 1.01 * d && vec2_dot(vec2_sub(sim.ball[m].vel, sim.ball[k].vel), n) > 0)
+					group.contact[group.count++] =
+						(struct event){0, EVENT_BALL_BALL, (int16_t)m, (int16_t)k};
+			}
+		}
+		double energy = sim_energy(&sim);
+		collide_balls(&sim, &group);
+		for (int k = 0; k < 7; k++)
+			after = vec2_add(after, sim.ball[k].vel);
+		ck_assert_double_le(vec2_dist(before, after), group.count ? 1e-4 : 0);
+		ck_assert_double_le(sim_energy(&sim), energy * (1 + 1e-12));
+		for (int k = 0; k < group.count && i % 3 < 2; k++) {
+			const struct ball *a = &sim.ball[group.contact[k].ball], *b = &sim.ball[group.contact[k].other];
+			ck_assert_double_ge(vec2_dot(vec2_sub(b->vel, a->vel), vec2_sub(b->pos, a->pos)), -1e-3);
+		}
+	}
+}
+END_TEST
+
+Suite *test_suite(void)
+{
+	Suite *suite = suite_create("contact");
+	TCase *tcase = tcase_create("contact");
+	tcase_set_timeout(tcase, 60);
+	tcase_add_test(tcase, simple_keeps_momentum_and_separates);
+	tcase_add_test(tcase, thesis_without_topspin);
+	tcase_add_test(tcase, thesis_topspin_variants);
+	tcase_add_test(tcase, cushions_mirror);
+	tcase_add_test(tcase, one_on_two);
+	tcase_add_test(tcase, clusters);
+	suite_add_tcase(suite, tcase);
+	return suite;
+}
