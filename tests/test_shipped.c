@@ -9,7 +9,7 @@
 #include "physics/sim.h"
 #include "scenes.h"
 
-enum { SHOTS = 2000, EVENTS = 5000 };
+enum { SHOTS = 10000, EVENTS = 5000 };
 static const char *const model_name[] = {"thesis", "simple", "simple-elastic", "real", "real-mathavan"};
 static const char *const file_name[] = {"config/thesis-table.conf", "config/snooker-12ft.conf"};
 enum { MODELS = sizeof model_name / sizeof *model_name, FILES = sizeof file_name / sizeof *file_name };
@@ -111,6 +111,27 @@ START_TEST(every_pocket_takes_a_ball)
 }
 END_TEST
 
+/* A ball with much spin begins behind the line of a jaw, bends round in front of it and meets it at the nose's corner.
+ */
+START_TEST(bent_way_round_a_nose)
+{
+	struct model model;
+	static struct sim sim;
+	load(file_name[0]);
+	ck_assert(model_from_name("simple", &model));
+	struct ball ball = ball_at(COLOUR_WHITE, (vec2){-0.73791, -0.03117});
+	ball.vel = (vec2){0.3566, 1.0062};
+	ball.spin[0] = 176.8;
+	ball.spin[1] = -203.7;
+	sim_init(&sim, &config.table, &model, &ball, 1);
+	ck_assert_int_eq(sim_run(&sim, &(struct sim_limits){.max_time = INFINITY, .max_events = EVENTS}, NULL),
+			 SIM_AT_REST);
+	struct ball end = sim_ball(&sim, 0);
+	ck_assert_msg(end.phase == BALL_POTTED || on_bed(end.pos), "(%.1f, %.1f) mm", end.pos.x * 1000,
+		      end.pos.y * 1000);
+}
+END_TEST
+
 Suite *test_suite(void)
 {
 	Suite *suite = suite_create("shipped");
@@ -119,6 +140,7 @@ Suite *test_suite(void)
 	tcase_add_loop_test(tcase, no_ball_is_lost, 0, MODELS * FILES);
 	tcase_add_loop_test(tcase, breaks_end, 0, MODELS * FILES);
 	tcase_add_loop_test(tcase, every_pocket_takes_a_ball, 0, MODELS * FILES);
+	tcase_add_test(tcase, bent_way_round_a_nose);
 	suite_add_tcase(suite, tcase);
 	return suite;
 }
