@@ -85,7 +85,7 @@ BENCH_SHARED_O := $(call obj,bench,$(BENCH_SHARED)) $(call obj,tests,random scen
 EVAL_BINS := $(patsubst %,$(BUILD)/bench/eval_%,$(EVALS))
 BENCH_BINS := $(patsubst %,$(BUILD)/bench/bench_%,$(BENCHES))
 
-.PHONY: all demo check check-built bench eval fuzz fuzzers headers lint install clean setup tests programs
+.PHONY: FORCE all demo check check-built bench eval fuzz fuzzers headers lint install clean setup tests programs
 .SECONDARY:
 .DELETE_ON_ERROR:
 
@@ -125,6 +125,13 @@ $(BUILD)/fuzz/%.o: fuzz/%.c
 
 # Only the application sees LCM, libconfig, Cairo, SDL and systemd.
 $(BUILD)/src/app/%.o: MODULE_CFLAGS = $(APP_CFLAGS) -DBILLIARD_CONFIG_DIR='"$(SYSCONFDIR)"'
+
+# Another place for configurations is another config.o.
+$(BUILD)/sysconfdir: FORCE
+	@mkdir -p $(@D)
+	@echo '$(SYSCONFDIR)' | cmp -s - $@ || echo '$(SYSCONFDIR)' >$@
+$(BUILD)/src/app/config.o: $(BUILD)/sysconfdir
+FORCE:
 
 # Generated code warns under -Wextra: flags of its own.
 $(BUILD)/lcmtypes/.stamp: $(patsubst %,lcmtypes/%.lcm,$(LCM_TYPES))
