@@ -34,7 +34,7 @@ TESTS := fsm stability plan_message controller planner_service bus services \
 	config position cmd plot draw render player table_camera contact_real contact_recorded shot_file \
 	rules cost geometry frontier pool scheme candidate plan plan_thesis plan_hard \
 	ball contact detect event inverse model motion queue roots sim sim_hard table trace
-TEST_SHARED := harness bus_fixture random poly_judge scenes search_random search_scenes shot_compare
+TEST_SHARED := harness bus_fixture random poly_judge scenes search_scenes shot_compare
 # tests that are scripts: tests/NAME.sh, called with the build folder
 TEST_SCRIPTS := cli
 # bench/bench_NAME.c each; bench/NAME.c shared by them
@@ -81,7 +81,7 @@ ARCHIVES := $(BUILD)/libapp.a $(BUILD)/liblcmtypes.a $(BUILD)/libsearch.a $(BUIL
 PROGRAM_BINS := $(addprefix $(BUILD)/,$(PROGRAMS))
 TEST_BINS := $(patsubst %,$(BUILD)/tests/test_%,$(TESTS))
 FUZZ_BINS := $(patsubst %,$(BUILD)/fuzz_%,$(FUZZERS))
-BENCH_SHARED_O := $(call obj,bench,$(BENCH_SHARED)) $(call obj,tests,random scenes search_random search_scenes shot_compare)
+BENCH_SHARED_O := $(call obj,bench,$(BENCH_SHARED)) $(call obj,tests,random scenes search_scenes shot_compare)
 EVAL_BINS := $(patsubst %,$(BUILD)/bench/eval_%,$(EVALS))
 BENCH_BINS := $(patsubst %,$(BUILD)/bench/bench_%,$(BENCHES))
 

@@ -217,6 +217,7 @@ static const struct {
 	{"jaws = ()", "jaws = ( 3 )", "table.jaws[0]: found 3, allowed a group { }"},
 	{"model = \"thesis\"", "model = \"thesi\"",
 	 "model: found \"thesi\", allowed thesis, simple, simple-elastic, real or real-mathavan"},
+	{"scheme = \"steal\"", "scheme = \"theft\"", "planner.scheme: found \"theft\", allowed batch, windows, queue, steal"},
 	{"profile = \"thesis\"", "profile = \"pro\"", "profile: found \"pro\", allowed a name from profiles"},
 	{"id = 3", "id = 1", "markers.list[3].id: found 1, allowed each id once"},
 	{"id = 3", "id = 4", "markers.list[3].id: found 4, allowed each id once and below dictionary_count"},

@@ -53,6 +53,13 @@ static int finish_profile(struct config_reader *reader, const config_t *settings
 	return 0;
 }
 
+static int finish_scheme(struct config_reader *reader, const config_t *settings, struct config_file *file)
+{
+	if (scheme_from_name(file->scheme, &file->config.planner.scheme))
+		return 0;
+	return config_reader_fail(reader, setting_at(settings, "planner.scheme"), NULL, "batch, windows, queue, steal");
+}
+
 static int finish_markers(struct config_reader *reader, const config_t *settings, const struct marker_layout *markers)
 {
 	for (int i = 0; i < markers->count; i++) {
@@ -104,6 +111,8 @@ static int finish(struct config_reader *reader, const config_t *settings, struct
 		code = finish_model(reader, settings, config);
 	if (code == 0)
 		code = finish_profile(reader, settings, file);
+	if (code == 0)
+		code = finish_scheme(reader, settings, file);
 	if (code == 0)
 		code = finish_markers(reader, settings, &config->markers);
 	if (code == 0)

@@ -18,7 +18,8 @@ struct config_planner {
 	int depth, rails, balls, speeds, plans;
 	uint64_t budget_nodes;		/* of a request by infinity; 0 none */
 	double budget;			/* s; 0 none */
-	double sync_period, sync_window;	/* s, k and n of thesis 4.7 */
+	enum plan_scheme scheme;
+	double sync_period, sync_window;	/* s, k and n of thesis 4.7; n 0: as long as fits */
 };
 
 /* Controller. */

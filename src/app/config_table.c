@@ -171,6 +171,7 @@ static const struct config_key planner_keys[] = {
 	WHOLE("plans", UNIT_NONE, 1, PLAN_MAX, AT(config.planner.plans)),
 	COUNT("budget_nodes", 0, 1e12, AT(config.planner.budget_nodes)),
 	NUMBER("budget", UNIT_MS, 0, 600000, AT(config.planner.budget)),
+	TEXT("scheme", 1, 15, AT(scheme)),
 	NUMBER("sync_period", UNIT_MS, 1, 10000, AT(config.planner.sync_period)),
 	NUMBER("sync_window", UNIT_MS, 0, 10000, AT(config.planner.sync_window)),
 	END,

@@ -192,9 +192,11 @@ static void serve(struct crew *crew)
 	struct worker *request[PLAN_WORKERS_MAX];
 	int count = 0, at = 0;
 	struct node node;
-	for (int i = 0; i < crew->worker_count; i++)
-		if (crew->serve_all || crew->worker[i].asks)
-			request[count++] = &crew->worker[i];
+	for (int i = 0; i < crew->worker_count; i++) {
+		struct worker *worker = &crew->worker[i];
+		if ((crew->serve_all || worker->asks) && atomic_load(&worker->inbox_count) < INBOX_MAX)
+			request[count++] = worker;
+	}
 	crew->serve_all = false;
 	while (count > 0 && crew_pop(crew, all, &node)) {
 		struct worker *worker = request[at];
