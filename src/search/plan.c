@@ -30,7 +30,7 @@ struct planner_def planner_def_default(void)
 static size_t fixed_memory(void)
 {
 	return sizeof(struct planner) + (PLAN_WORKERS_MAX + 1) * sizeof(struct workspace) + BATCH * sizeof(struct slot) +
-	       STATES_MAX * sizeof(struct state) + PLAN_SHOTS_MAX * sizeof(struct solutions) + PLAN_MAX * sizeof(struct plan);
+	       STATES_MAX * sizeof(struct state) + (PLAN_SHOTS_MAX + 1) * sizeof(struct solutions) + PLAN_MAX * sizeof(struct plan);
 }
 
 static int take_memory(struct planner *planner)
@@ -41,7 +41,7 @@ static int take_memory(struct planner *planner)
 	planner->work = calloc((size_t)workers, sizeof *planner->work);
 	planner->slot = calloc(BATCH, sizeof *planner->slot);
 	planner->state = calloc(STATES_MAX, sizeof *planner->state);
-	planner->solutions = calloc(PLAN_SHOTS_MAX, sizeof *planner->solutions);
+	planner->solutions = calloc(PLAN_SHOTS_MAX + 1, sizeof *planner->solutions);
 	planner->plan = calloc(PLAN_MAX, sizeof *planner->plan);
 	if (!planner->work || !planner->slot || !planner->state || !planner->solutions || !planner->plan)
 		return -ENOMEM;
@@ -158,8 +158,9 @@ static void search(struct planner *planner, plan_progress_fn *progress, void *co
 		crew_run(planner->crew, progress, context, result);
 	else
 		run_batches(planner, progress, context, result);
-	if (!best_solutions(planner))
-		safety_find(planner);
+	struct solutions *list = best_solutions(planner);
+	if (!list || list == &planner->solutions[SAFETY_LIST])
+		safety_find(planner, true);
 	planner->deadline = budget > 0 ? begin + budget : INFINITY;
 	rank_solutions(planner);
 }

@@ -16,6 +16,8 @@ enum {
 	STATES_MAX = 2048,
 	AIMS_MAX = 10,			/* aims at a pocket: up to 9 points of it, and along a cushion */
 	ROOTS_MAX = POCKET_MAX * AIMS_MAX,
+	SAFETY_STEP = 2,	/* after so many batches without a proposal a simple contact is proposed */
+	SAFETY_LIST = PLAN_SHOTS_MAX,	/* place of the contact shot among the lists of solutions */
 	NO_STATE = -1
 };
 
@@ -80,7 +82,7 @@ struct planner {
 	struct workspace *work;		/* one a worker */
 	struct slot *slot;		/* BATCH */
 	struct state *state;		/* STATES_MAX */
-	struct solutions *solutions;	/* by number of shots: PLAN_SHOTS_MAX */
+	struct solutions *solutions;	/* by number of shots, and at SAFETY_LIST the contact shot */
 	struct plan *plan;		/* PLAN_MAX, what results point to */
 	struct frontier frontier;
 	struct crew *crew;		/* NULL for SCHEME_BATCH */
@@ -144,7 +146,8 @@ void tolerance_find(const struct planner *planner, const struct state *state, st
 /* Finds tolerance and success of as many of the best plans as the request or the profile asks for, and ranks by success if the profile does. */
 void rank_solutions(struct planner *planner);
 
-/* With nothing to pot: the simplest legal contact becomes the one solution. False when even that is not to be had. */
-bool safety_find(struct planner *planner);
+/* With nothing to pot (yet): the simplest legal contact becomes the one solution. thorough: beside the middle of balls, over cushions, at
+ * last a fan of directions and the cheapest foul. False when there is none. */
+bool safety_find(struct planner *planner, bool thorough);
 
 #endif

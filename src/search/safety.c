@@ -47,14 +47,14 @@ static double speed_for(const struct scene *scene, const struct way *way)
 }
 
 /* The cue ball to ball over a sequence, aimed beside its middle by off radii. */
-static void aim_at(const struct scene *scene, int state, int ball, double off, struct aims *aims)
+static void aim_at(const struct scene *scene, int state, int ball, double off, int rails, struct aims *aims)
 {
 	vec2 cue = scene->ball[scene->cue].pos, target = scene->ball[ball].pos;
 	double diameter = 2 * scene->table->ball_radius;
 	uint32_t others = ~(1u << ball | 1u << scene->cue);
 	vec2 side = vec2_scale(vec2_perp(vec2_unit(vec2_sub(target, cue))), off * scene->table->ball_radius);
 	struct images images;
-	images_init(&images, scene->mirrors, vec2_add(target, side), (vec2){1, 0}, scene->rails > SAFETY_RAILS ? scene->rails : SAFETY_RAILS);
+	images_init(&images, scene->mirrors, vec2_add(target, side), (vec2){1, 0}, rails);
 	for (int s = 0; s < images.count; s++) {
 		struct way way;
 		if (!images.valid[s] || !way_build(&way, scene->mirrors, &images, s, cue))
@@ -119,7 +119,7 @@ static bool play(struct planner *planner, const struct aim *aim, struct record *
 static void keep(struct planner *planner, const struct aim *aim, const struct record *record)
 {
 	struct solution solution = solution_make(planner, aim->state, record);
-	solutions_add(&planner->solutions[0], &solution);
+	solutions_add(&planner->solutions[SAFETY_LIST], &solution);
 }
 
 /* No aim works: a fan of directions, the first legal shot or else the cheapest foul. */
@@ -142,15 +142,16 @@ static bool fan_find(struct planner *planner)
 	return best_foul < 1000;
 }
 
-bool safety_find(struct planner *planner)
+bool safety_find(struct planner *planner, bool thorough)
 {
 	static const double off[AIMS] = {0, 0.7, -0.7, 1.6, -1.6};
 	struct aims aims = {.count = 0};
+	int rails = planner->request->rails > SAFETY_RAILS ? planner->request->rails : SAFETY_RAILS;
 	for (int i = 0; i < planner->state_count && planner->state[i].parent == NO_STATE; i++) {
 		const struct scene *scene = &planner->state[i].scene;
 		for (int b = 0; b < scene->count; b++)
-			for (int a = 0; a < AIMS && (scene->on >> b & 1); a++)
-				aim_at(scene, i, b, off[a], &aims);
+			for (int a = 0; a < (thorough ? AIMS : 1) && (scene->on >> b & 1); a++)
+				aim_at(scene, i, b, off[a], thorough ? rails : 0, &aims);
 	}
 	for (int i = 0; i < aims.count && (i == 0 || !search_is_over(planner)); i++) {
 		struct record record;
@@ -159,5 +160,5 @@ bool safety_find(struct planner *planner)
 		keep(planner, &aims.aim[i], &record);
 		return true;
 	}
-	return planner->state[0].scene.on != 0 && fan_find(planner);
+	return thorough && planner->state[0].scene.on != 0 && fan_find(planner);
 }

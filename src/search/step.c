@@ -152,9 +152,10 @@ void search_begin(struct planner *planner)
 	planner->state_count = 0;
 	planner->nodes = planner->sims = planner->tried = planner->landed = planner->refined = 0;
 	planner->overflow = planner->cut = false;
-	for (int i = 0; i < PLAN_SHOTS_MAX; i++) {
+	planner->batch_count = 0;
+	for (int i = 0; i <= SAFETY_LIST; i++) {
 		planner->solutions[i].count = 0;
-		planner->solutions[i].limit = request->plans;
+		planner->solutions[i].limit = i == SAFETY_LIST ? 1 : request->plans;
 	}
 	for (int i = 0; i < request->ball_count; i++)
 		if (request->ball[i].colour == COLOUR_WHITE)
@@ -170,7 +171,7 @@ struct solutions *best_solutions(struct planner *planner)
 	for (int shots = planner->request->depth; shots >= 1; shots--)
 		if (planner->solutions[shots - 1].count > 0)
 			return &planner->solutions[shots - 1];
-	return NULL;
+	return planner->solutions[SAFETY_LIST].count > 0 ? &planner->solutions[SAFETY_LIST] : NULL;
 }
 
 void slot_work(const struct planner *planner, struct slot *slot, struct workspace *work)
@@ -292,5 +293,7 @@ bool search_step(struct planner *planner, bool *improved)
 	pool_for(planner->pool, count, work_on, planner);
 	for (int i = 0; i < count; i++)
 		merge(planner, &planner->slot[i], improved);
+	if (++planner->batch_count == SAFETY_STEP && !best_solutions(planner))
+		*improved = safety_find(planner, false);
 	return true;
 }
