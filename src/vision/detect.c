@@ -5,7 +5,7 @@
 
 static const double EDGE_SLACK = 0.007;		/* m a fitted centre may lie beyond where cushions let it be */
 static const double MOUTH_INNER = 0.8;		/* of a pocket's radius: nearer to its centre a ball has fallen */
-static const double SUPPORT_SEED = 0.48, SUPPORT_PACKED = 0.33, SUPPORT_MIN = 0.62;
+static const double SUPPORT_SEED = 0.42, SUPPORT_PACKED = 0.33, SUPPORT_MIN = 0.62;
 enum { ROUNDS = 3 };
 static const double SUPPORT_ROUGH = 0.17;	/* less in the first round */
 static const double SUPPORT_CROWDED = 0.5, RING_FREE = 0.3;	/* more of it is wanted where it lies among other foreign things */
@@ -390,7 +390,7 @@ static void settle(struct detector *d, struct fit_view *view)
 
 static struct fit_view view_of(const struct detector *d, const struct image *frame, const struct camera *camera)
 {
-	return (struct fit_view){frame, camera, d->table->ball_radius, NULL, 0};
+	return (struct fit_view){.frame = frame, .camera = camera, .radius = d->table->ball_radius};
 }
 
 void detector_begin(struct detector *d)
@@ -433,6 +433,7 @@ void detector_search(struct detector *d, const struct image *frame, const struct
 {
 	struct fit_view view = view_of(d, frame, camera);
 	seeds_find(&d->seeds, &d->scan, active);
+	view.coarse = true;
 	for (int i = 0; i < d->seeds.count; i++)
 		try_place(d, &view, d->seeds.seed[i].px, SUPPORT_SEED);
 }

@@ -5,8 +5,13 @@
 
 #include "vision/linear.h"
 
-enum { REACH_WIDE = 7, REACH_NARROW = 5 };	/* samples to either side of the rim */
-static const double STEP_SHARE = 1 / 20.0;	/* distance of samples over the radius: 0.78 px at 15.5 px */
+/* How the rim is sampled: samples to either side of it (wide: in the first step), and their distance over the radius. */
+struct sampling {
+	int wide, narrow;
+	double step;
+};
+enum { REACH_MAX = 10 };
+static const struct sampling FINE = {10, 7, 1 / 28.0}, COARSE = {6, 4, 1 / 16.0};
 static const double CONTRAST_MIN = 12;		/* levels; a weaker edge is noise */
 static const double CONTRAST_FULL = 40;
 /* How far an edge usually lies off, px; edges side by side err alike, so each counts less than its own noise would say. */
@@ -14,6 +19,7 @@ static const double EDGE_PX = 0.9;
 /* In a crease between balls the own dark limb belongs to the outside: the edge is seen this far inside of the rim. */
 static const double CREASE_PX = -0.5, CREASE_SPREAD_PX = 0.8, CREASE_REACH = 1.5;
 static const float CREASE_CHROMA2 = 0.16f * 0.16f, CREASE_SHADE = 0.33f;
+static const double STEEP_REACH = 0.108;		/* radii around the half way that are searched */
 static const double EDGES_MIN = 0.3;		/* share of open rays with any edge at all */
 static const double EXPLAINED_MIN = 0.3;		/* share of them that one outline explains */
 static const double SUPPORT_PX = 1.1;		/* an edge this near is where it should be */
@@ -57,6 +63,20 @@ static bool half_crossing(const float *v, int count, double *at)
 	return best < 1e8;
 }
 
+/* The steepest place near there. Shading makes the levels to either side slope, and with them the half way; the steepest place stays. */
+static double steepest(const float *v, int count, double half, double reach)
+{
+	double sum = 0, moment = 0, middle = (count - 1) / 2.0;
+	for (int j = 0; j + 1 < count; j++) {
+		double t = j + 0.5 - middle, fall = v[j] - v[j + 1];
+		if (fall <= 0 || fabs(t - half) > reach)
+			continue;
+		sum += fall * fall * fall;
+		moment += fall * fall * fall * t;
+	}
+	return sum > 0 ? moment / sum : half;
+}
+
 /* Neither plain, lit nor shaded cloth. */
 static bool is_foreign(const float p[3], const float c[3])
 {
@@ -78,7 +98,7 @@ static bool profile(const struct image *im, const struct ray *ray, const float c
 	int reach = ray->reach;
 	double step = ray->step;
 	int count = 2 * reach + 1, ends = reach / 2;
-	float colour[2 * REACH_WIDE + 1][3], in[3] = {0}, out[3] = {0}, d[3], dd = 0;
+	float colour[2 * REACH_MAX + 1][3], in[3] = {0}, out[3] = {0}, d[3], dd = 0;
 	double far = reach * step;
 	if (!is_inside(im, p.x - far * n.x, p.y - far * n.y) || !is_inside(im, p.x + far * n.x, p.y + far * n.y))
 		return false;
@@ -117,12 +137,12 @@ static double nearest_neighbour(const struct fit_view *view, const struct fit *s
 	return nearest;
 }
 
-static void find_edges(const struct fit_view *view, struct fit *fit, int reach, struct edge edge[OUTLINE_POINTS])
+static void find_edges(const struct fit_view *view, struct fit *fit, int reach, double step_share, struct edge edge[OUTLINE_POINTS])
 {
-	double step = fit->outline.radius_px * STEP_SHARE;
+	double step = fit->outline.radius_px * step_share;
 	for (int i = 0; i < OUTLINE_POINTS; i++) {
 		vec2 p = fit->outline.point[i], n = fit->outline.normal[i];
-		float v[2 * REACH_WIDE + 1];
+		float v[2 * REACH_MAX + 1];
 		struct ray ray = {p, n, reach, step};
 		double at;
 		edge[i] = (struct edge){0};
@@ -133,7 +153,7 @@ static void find_edges(const struct fit_view *view, struct fit *fit, int reach, 
 			continue;
 		edge[i].found = true;
 		edge[i].crease = edge[i].crease && near < CREASE_REACH;
-		edge[i].offset = at * step;
+		edge[i].offset = steepest(v, 2 * reach + 1, at, STEEP_REACH / step_share) * step;
 		edge[i].weight = fmin(1, edge[i].contrast / CONTRAST_FULL);
 	}
 }
@@ -218,6 +238,7 @@ static double edges_found(const struct edge edge[OUTLINE_POINTS])
 
 bool fit_refine(const struct fit_view *view, struct fit *fit, int steps)
 {
+	const struct sampling *how = view->coarse ? &COARSE : &FINE;
 	vec2 from = fit->pos;
 	struct edge edge[OUTLINE_POINTS];
 	double shift[UNKNOWNS] = {0};
@@ -225,7 +246,7 @@ bool fit_refine(const struct fit_view *view, struct fit *fit, int steps)
 		bool last = s == steps;
 		if (!outline_of_ball(view->camera, fit->pos, view->radius, fit->scale, &fit->outline))
 			return false;
-		find_edges(view, fit, s == 0 ? REACH_WIDE : REACH_NARROW, edge);
+		find_edges(view, fit, s == 0 ? how->wide : how->narrow, how->step, edge);
 		if (last)
 			break;
 		/* Nothing like a rim: no use going on. */

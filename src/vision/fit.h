@@ -25,6 +25,7 @@ struct fit_view {
 	double radius;			/* m, of a ball */
 	const struct fit *other;	/* neighbours that may hide parts of the rim; the ball itself may be among them */
 	int other_count;
+	bool coarse;			/* half the samples: enough to tell whether there is a ball at all */
 };
 
 /* Improves pos and scale in steps from fit's own values, at most `steps`. False when it runs away or finds no rim. */
