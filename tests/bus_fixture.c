@@ -110,7 +110,7 @@ static _Noreturn void become(const char *program, const char *const *arguments)
 	ssize_t n = readlink("/proc/self/exe", self, sizeof self - 1);
 	self[n > 0 ? n : 0] = '\0';
 	snprintf(path, sizeof path, "%s/../%s", dirname(self), program);
-	for (int i = 0; arguments[i] && i < ARGUMENT_MAX; i++)
+	for (int i = 0; i < ARGUMENT_MAX && arguments[i]; i++)
 		argv[i + 1] = (char *)arguments[i];
 	redirect(STDOUT_FILENO);
 	redirect(STDERR_FILENO);
