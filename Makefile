@@ -36,9 +36,9 @@ TESTS := fsm stability plan_message controller planner_service bus services \
 	ball contact detect event inverse model motion queue roots sim sim_hard table trace
 TEST_SHARED := harness bus_fixture random poly_judge scenes search_scenes shot_compare
 # tests that are scripts: tests/NAME.sh, called with the build folder
-TEST_SCRIPTS := cli
+TEST_SCRIPTS := cli demo
 # bench/bench_NAME.c each; bench/NAME.c shared by them
-BENCHES := physics accuracy planner
+BENCHES := physics accuracy planner search
 # bench/eval_NAME.c each: accuracy on recorded data
 EVALS := physics
 BENCH_SHARED := report plain_sim plain_sim_long

@@ -36,7 +36,7 @@ typedef bool bus_handler(void *context, const void *message);
 
 enum bus_delivery {
 	BUS_EACH,	/* every message, in order */
-	BUS_LATEST	/* of those that wait, only the newest */
+	BUS_LATEST	/* of those that wait, only the newest: for messages that are dear to handle. A newest that the handler refuses costs the others */
 };
 
 struct bus;	/* opaque */

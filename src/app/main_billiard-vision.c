@@ -13,7 +13,7 @@ static const double FILE_FPS = 10, CAMERA_FPS = 30;	/* 1/s */
 static const char CHANNEL_CHARACTERS[] = "ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789_-";
 enum { DARK_FRAMES = 6 };	/* more than the controller forgives */
 static const double SILENCE = 1;	/* s without a frame until the table counts as unseen */
-enum { JPEG_QUALITY = 92, SOURCE_TICK_US = 500000 };
+enum { JPEG_QUALITY = 92, SOURCE_TICK_US = 500000, LATENCY_US = 500000 };
 
 struct vision_process {
 	struct process process;
@@ -192,6 +192,7 @@ static int on_silence(sd_event_source *event, uint64_t usec, void *context)
 	process_state(&p->process, "no frames");
 	/* In the source's clock: a replayed recording has its own. */
 	int64_t utime = p->last_frame ? p->last_frame + (int64_t)(1e6 * silent) : process_utime();
+	utime -= LATENCY_US;	/* a frame under way must not count as older */
 	publish_state(p, utime, 0);
 	return 0;
 }
