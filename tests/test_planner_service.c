@@ -132,6 +132,9 @@ START_TEST(a_newer_request_replaces_the_running_one)
 	ck_assert_int_eq(answer.status, PLAN_MESSAGE_OK);
 	/* The former one asked late is outdated. */
 	ck_assert(!planner_service_request(service, make(1, true)));
+	next();
+	ck_assert(answer.request_id == 1 && answer.is_final && answer.status == PLAN_MESSAGE_CANCELLED);
+	ck_assert_ptr_nonnull(strstr((const char *)answer.reason, "outdated"));
 	ck_assert(no_more());
 }
 END_TEST
@@ -213,9 +216,13 @@ START_TEST(older_requests_are_taken_after_a_while)
 	planner_service_request(service, make(1000, true));
 	final();
 	ck_assert(!planner_service_request(service, make(10, true)));
+	final();
 	double begin = process_seconds(NULL);
-	while (!planner_service_request(service, make(10, true)))
+	while (!planner_service_request(service, make(10, true))) {
+		final();
+		ck_assert(answer.request_id == 10 && answer.status == PLAN_MESSAGE_CANCELLED);
 		ck_assert_double_lt(process_seconds(NULL) - begin, 10);
+	}
 	final();
 	ck_assert_int_eq(answer.request_id, 10);
 }

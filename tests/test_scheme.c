@@ -69,7 +69,7 @@ static void check_request(const struct table *table, const struct cost_profile *
 			check_same_list(&want, &result);
 			if (!exhausts || request->plans == PLAN_MAX) {
 				ck_assert_uint_eq(result.nodes, want.nodes);
-				ck_assert_uint_eq(result.sims, want.sims);
+				ck_assert_uint_eq(result.tried, want.tried);	/* not sims: when a contact is proposed meanwhile depends */
 			}
 			planner_destroy(planner);
 		}
@@ -182,7 +182,7 @@ START_TEST(progress_and_figures)
 		ck_assert_double_eq(watch.last, result.plan[0].cost);
 		planner_figures(planner, &after);
 		ck_assert_uint_eq(after.nodes - before.nodes, result.nodes);
-		ck_assert_uint_eq(after.sims - before.sims, result.sims);
+		ck_assert_uint_ge(result.sims, after.sims - before.sims);
 		ck_assert_int_eq(after.busy, 0);
 		ck_assert_uint_eq(after.open, 0);
 		ck_assert_int_eq(after.depth, result.plan[0].shot_count);

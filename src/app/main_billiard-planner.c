@@ -12,6 +12,8 @@ struct planner_process {
 	struct config config;
 	struct planner_service *service;
 	billiard_plan_t answer;
+	int64_t malformed, ignored;	/* requests that could not be read; messages ignored before */
+	double work, work_time;		/* nodes and simulations at the last STATUS, when that was */
 };
 
 static bool on_request(void *context, const void *message)
@@ -44,6 +46,36 @@ static int on_answers(sd_event_source *source, int fd, uint32_t events, void *co
 	return 0;
 }
 
+/* After each turn of the loop: a request that could not be read is answered, too. Its id is not known: 0. */
+static int on_turn(sd_event_source *source, void *context)
+{
+	(void)source;
+	static const char CHANNEL[] = "PLAN_REQUEST: ";
+	struct planner_process *p = context;
+	const char *why = bus_last_ignored(p->process.bus);
+	int64_t ignored = bus_ignored(p->process.bus);
+	if (ignored == p->ignored)
+		return 0;
+	p->ignored = ignored;
+	if (strncmp(why, CHANNEL, sizeof CHANNEL - 1) != 0 || !strstr(why, "malformed"))
+		return 0;
+	p->malformed++;
+	p->answer = (billiard_plan_t){.utime = process_utime(), .is_final = 1, .status = PLAN_MESSAGE_REFUSED};
+	bus_set_text(p->answer.reason, sizeof p->answer.reason, why + sizeof CHANNEL - 1);
+	bus_publish(p->process.bus, "PLAN", &bus_plan, &p->answer);
+	return 0;
+}
+
+/* Expansions and simulations a second since the last STATUS. */
+static double rate(struct planner_process *p, const struct planner_service_figures *f)
+{
+	double now = process_seconds(NULL), work = (double)(f->nodes + f->sims);
+	double rate = now > p->work_time ? (work - p->work) / (now - p->work_time) : 0;
+	p->work = work;
+	p->work_time = now;
+	return rate;
+}
+
 static void describe(void *context, struct process *process)
 {
 	struct planner_process *p = context;
@@ -52,9 +84,17 @@ static void describe(void *context, struct process *process)
 	process_state(process, f.busy ? "searching" : "idle");
 	process_metric(process, "requests", "1", (double)f.requests);
 	process_metric(process, "refused", "1", (double)f.refused);
+	process_metric(process, "malformed", "1", (double)p->malformed);
+	process_metric(process, "outdated", "1", (double)f.outdated);
 	process_metric(process, "cancelled", "1", (double)f.cancelled);
 	process_metric(process, "nodes", "1", (double)f.nodes);
 	process_metric(process, "simulations", "1", (double)f.sims);
+	process_metric(process, "rate", "1/s", rate(p, &f));
+	process_metric(process, "depth", "1", f.search.depth);
+	process_metric(process, "queue", "1", f.search.open);
+	process_metric(process, "busy", "1", f.search.busy);
+	process_metric(process, "windows", "1", (double)f.search.windows_held);
+	process_metric(process, "missed", "1", (double)(f.search.windows_missed + f.search.windows_blocked));
 	process_metric(process, "first", "ms", 1e3 * f.last_first);
 	process_metric(process, "final", "ms", 1e3 * f.last_final);
 }
@@ -73,7 +113,8 @@ static int setup(struct planner_process *p, const struct process_options *option
 	p->process.context = p;
 	if ((r = bus_subscribe(p->process.bus, "PLAN_REQUEST", &bus_plan_request, BUS_EACH, on_request, p)) < 0 ||
 	    (r = bus_subscribe(p->process.bus, "COMMAND", &bus_command, BUS_EACH, on_command, p)) < 0 ||
-	    (r = sd_event_add_io(p->process.event, NULL, planner_service_descriptor(p->service), EPOLLIN, on_answers, p)) < 0)
+	    (r = sd_event_add_io(p->process.event, NULL, planner_service_descriptor(p->service), EPOLLIN, on_answers, p)) < 0 ||
+	    (r = sd_event_add_post(p->process.event, NULL, on_turn, p)) < 0)
 		fprintf(stderr, "billiard-planner: %s\n", strerror(-r));
 	return r;
 }

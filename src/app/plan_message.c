@@ -211,7 +211,7 @@ void plan_message_fill(billiard_plan_t *out, const struct plan_result *result, c
 		       struct trace_entry *scratch)
 {
 	out->status = result->status == PLAN_CANCELLED ? PLAN_MESSAGE_CANCELLED : result->plan_count ? PLAN_MESSAGE_OK : PLAN_MESSAGE_NONE;
-	out->found = result->plan_count;
+	out->found = result->found;
 	out->nodes = (int64_t)result->nodes;
 	out->sims = (int64_t)result->sims;
 	out->entry_count = result->plan_count < PLAN_MESSAGE_ENTRIES ? result->plan_count : PLAN_MESSAGE_ENTRIES;

@@ -7,6 +7,7 @@
 #include <stdlib.h>
 #include <string.h>
 #include <sys/eventfd.h>
+#include <time.h>
 #include <unistd.h>
 
 #include "app/bus.h"
@@ -15,10 +16,19 @@
 
 static const double IMPROVEMENT_PERIOD = 0.1;	/* s between improved answers at least */
 static const double OUTDATED = 2;		/* s after the last answer within which an older request is a late one */
+static const double ANSWER_TIME = 0.003;	/* s of a live budget that go into making and sending the final answer */
+static const double LEAST_TIME = 0.001;		/* s that a search gets in any case */
 static const char REPLACED[] = "replaced by a newer request or cancelled";
 
 /* Answers on their way to the loop. A request makes at most one final answer; improvements replace each other. */
 enum { ANSWER_MAX = 4 };
+
+static double thread_seconds(void)
+{
+	struct timespec t;
+	clock_gettime(CLOCK_THREAD_CPUTIME_ID, &t);
+	return (double)t.tv_sec + 1e-9 * (double)t.tv_nsec;
+}
 
 struct planner_service {
 	const struct config *config;	/* borrowed */
@@ -98,13 +108,20 @@ static void send_plan(struct search *search, bool final)
 		service->figures.last_first = now - search->request_time;
 	if (final) {
 		service->figures.last_final = now - search->request_time;
-		service->figures.nodes += plan->nodes;
-		service->figures.sims += plan->sims;
 		service->figures.cancelled += plan->status == PLAN_MESSAGE_CANCELLED;
 	}
 	post(service, plan);
 	pthread_mutex_unlock(&service->lock);
 	search->last_sent = now;
+}
+
+/* A live budget counts from the request's arrival to the answer. */
+static void spend(struct plan_request *request, double request_time)
+{
+	if (request->budget.seconds <= 0)
+		return;
+	double left = request_time + request->budget.seconds - ANSWER_TIME - process_seconds(NULL);
+	request->budget.seconds = left > LEAST_TIME ? left : LEAST_TIME;
 }
 
 static void on_progress(void *context, const struct plan_result *result)
@@ -125,6 +142,8 @@ static void run_search(struct planner_service *service, const billiard_plan_requ
 	struct plan_result result = {0};
 	plan_message_begin(&service->draft, message);
 	int r = plan_request_from_message(&request, message, &service->config->table, err, sizeof err);
+	if (r == 0)
+		spend(&request, request_time);
 	if (r == 0)
 		r = planner_run(service->planner, &request, on_progress, &search, &result, err, sizeof err);
 	if (r == -EINVAL) {
@@ -162,12 +181,37 @@ static void *search_thread(void *context)
 		service->busy = true;
 		atomic_store_explicit(&service->unwanted, false, memory_order_relaxed);
 		pthread_mutex_unlock(&service->lock);
+		double began = process_seconds(NULL), cpu = thread_seconds();
 		run_search(service, &request, request_time);
 		pthread_mutex_lock(&service->lock);
+		service->figures.searched += process_seconds(NULL) - began;
+		service->figures.manager += thread_seconds() - cpu;
 		service->busy = false;
 	}
 	pthread_mutex_unlock(&service->lock);
 	return NULL;
+}
+
+static struct planner_def define(const struct config *config)
+{
+	const struct config_planner *planner = &config->planner;
+	long cores = sysconf(_SC_NPROCESSORS_ONLN);
+	struct planner_def def = planner_def_default();
+	def.table = &config->table;
+	def.model = config->model;
+	def.profile = config->profile;
+	def.workers = planner->workers ? planner->workers : cores > 2 ? (int)cores - 1 : 1;
+	if (def.workers > PLAN_WORKERS_MAX)
+		def.workers = PLAN_WORKERS_MAX;
+	if (planner->memory)
+		def.memory = planner->memory;
+	def.scheme = planner->scheme;
+	def.sync_period = planner->sync_period;
+	/* A window for each worker and one for the manager must fit into a period. */
+	double longest = def.sync_period / (def.workers + 1);
+	def.sync_window = planner->sync_window > 0 && planner->sync_window < longest ? planner->sync_window : longest;
+	def.progress_plans = 1;	/* each costs simulations for its keyframes: all of them come with the final answer */
+	return def;
 }
 
 int planner_service_create(struct planner_service **out, const struct config *config, char *err, size_t err_size)
@@ -183,16 +227,7 @@ int planner_service_create(struct planner_service **out, const struct config *co
 	pthread_cond_init(&service->wake, NULL);
 	service->descriptor = eventfd(0, EFD_CLOEXEC | EFD_NONBLOCK);
 	service->scratch = malloc(PLAN_TRACE_MAX * sizeof service->scratch[0]);
-	long cores = sysconf(_SC_NPROCESSORS_ONLN);
-	struct planner_def def = planner_def_default();
-	def.table = &config->table;
-	def.model = config->model;
-	def.profile = config->profile;
-	def.workers = config->planner.workers ? config->planner.workers : cores > 2 ? (int)cores - 1 : 1;
-	if (def.workers > PLAN_WORKERS_MAX)
-		def.workers = PLAN_WORKERS_MAX;
-	if (config->planner.memory)
-		def.memory = config->planner.memory;
+	struct planner_def def = define(config);
 	def.now = search_clock;
 	def.now_context = service;
 	int r = service->descriptor < 0 ? -errno : !service->scratch ? -ENOMEM : planner_create(&service->planner, &def);
@@ -235,27 +270,28 @@ int planner_service_descriptor(const struct planner_service *service)
 	return service->descriptor;
 }
 
-/* A request that never began still ends with a final answer. Locked by the caller. */
-static void answer_unstarted(struct planner_service *service)
+/* A request that is not worked on still ends with a final answer. Locked by the caller. */
+static void answer_without_search(struct planner_service *service, const billiard_plan_request_t *request, const char *reason)
 {
 	billiard_plan_t plan;
-	plan_message_begin(&plan, &service->request);
+	plan_message_begin(&plan, request);
 	plan.utime = process_utime();
 	plan.is_final = 1;
 	plan.status = PLAN_MESSAGE_CANCELLED;
-	bus_set_text(plan.reason, sizeof plan.reason, REPLACED);
+	bus_set_text(plan.reason, sizeof plan.reason, reason);
 	post(service, &plan);
-	service->figures.cancelled++;
-	service->has_request = false;
 }
 
 /* Ends what waits or runs. Locked by the caller. */
 static void drop_present(struct planner_service *service)
 {
-	if (service->has_request)
-		answer_unstarted(service);
-	else if (service->busy)
-		atomic_store_explicit(&service->unwanted, true, memory_order_relaxed);
+	if (!service->has_request) {
+		atomic_store_explicit(&service->unwanted, service->busy, memory_order_relaxed);
+		return;
+	}
+	answer_without_search(service, &service->request, REPLACED);
+	service->figures.cancelled++;
+	service->has_request = false;
 }
 
 static void take(struct planner_service *service, const billiard_plan_request_t *request)
@@ -286,6 +322,10 @@ bool planner_service_request(struct planner_service *service, const billiard_pla
 		/* Not late: the asker's clock was set back, or a recording is replayed. */
 		take(service, request);
 	} else {
+		char reason[sizeof service->draft.reason];
+		snprintf(reason, sizeof reason, "outdated: request %lld came after it", (long long)service->present_id);
+		answer_without_search(service, request, reason);
+		service->figures.outdated++;
 		accepted = false;
 	}
 	pthread_mutex_unlock(&service->lock);
@@ -322,4 +362,7 @@ void planner_service_figures(struct planner_service *service, struct planner_ser
 	*out = service->figures;
 	out->busy = service->busy;
 	pthread_mutex_unlock(&service->lock);
+	planner_figures(service->planner, &out->search);
+	out->nodes = (int64_t)out->search.nodes;
+	out->sims = (int64_t)out->search.sims;
 }

@@ -9,8 +9,10 @@
 struct planner_service;	/* opaque */
 
 struct planner_service_figures {
-	int64_t requests, refused, cancelled;
-	int64_t nodes, sims;		/* of finished searches */
+	int64_t requests, refused, cancelled, outdated;
+	int64_t nodes, sims;
+	struct plan_figures search;	/* of now */
+	double searched, manager;	/* s spent on searches; CPU time of the thread that runs them */
 	double last_first, last_final;	/* s from request to first and final answer */
 	bool busy;
 };
@@ -23,7 +25,8 @@ void planner_service_destroy(struct planner_service *service);	/* NULL is fine; 
 int planner_service_descriptor(const struct planner_service *service);
 
 /* A request: replaces the one that runs (which ends with a final answer marked cancelled); the same id again is answered with the last
- * answer, or goes on. False when it is older than the present one (outdated), unless that has been answered for two seconds. */
+ * answer, or goes on. False when it is older than the present one, unless that has been answered for two seconds: it is outdated and
+ * gets a final answer marked cancelled that says so. */
 bool planner_service_request(struct planner_service *service, const billiard_plan_request_t *request);
 /* Ends the search for that id, if it runs. */
 void planner_service_cancel(struct planner_service *service, int64_t id);

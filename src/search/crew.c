@@ -197,6 +197,20 @@ static void take_in(struct crew *crew, struct worker *worker, const struct slot 
 		open_state(crew, worker, &solution, &played->outcome);
 }
 
+/* Nothing found for a while: the manager is to propose a simple contact meanwhile, as batches do. */
+static void ask_for_safety(struct crew *crew, const struct worker *worker)
+{
+	uint64_t done = atomic_load_explicit(&worker->count[COUNT_NODES], memory_order_relaxed) - worker->before[COUNT_NODES];
+	if (done < SAFETY_STEP * BATCH || atomic_load_explicit(&crew->best, memory_order_relaxed) < INFINITY)
+		return;
+	if (atomic_load_explicit(&crew->safety_asked, memory_order_relaxed) || atomic_exchange(&crew->safety_asked, true))
+		return;
+	pthread_mutex_lock(&crew->lock);
+	crew->safety_due = true;
+	pthread_cond_signal(&crew->news);
+	pthread_mutex_unlock(&crew->lock);
+}
+
 static void take_in_all(struct crew *crew, struct worker *worker, struct slot *slot)
 {
 	count_up(&worker->count[COUNT_NODES], slot->expansions);
@@ -217,6 +231,7 @@ static void take_in_all(struct crew *crew, struct worker *worker, struct slot *s
 		crew->share->give(crew, worker, slot->child, wanted);
 	if (must_report(crew, worker))
 		report_now(crew, worker);
+	ask_for_safety(crew, worker);
 }
 
 static void work(void *context, int item, int thread)
@@ -226,10 +241,11 @@ static void work(void *context, int item, int thread)
 	struct planner *planner = crew->planner;
 	struct worker *worker = &crew->worker[item];
 	struct slot *slot = &planner->slot[item];
+	struct workspace *workspace = &planner->work[item + 1];	/* the first is the manager's */
 	while (crew->share->take(crew, worker, &slot->node)) {
 		if (node_is_spare(planner, &slot->node))
 			continue;
-		slot_work(planner, slot, &planner->work[item]);
+		slot_work(planner, slot, workspace);
 		take_in_all(crew, worker, slot);
 	}
 	pthread_mutex_lock(&crew->lock);
@@ -249,7 +265,9 @@ static void begin(struct crew *crew)
 	atomic_store(&crew->dry, 0);
 	atomic_store(&crew->over, false);
 	atomic_store(&crew->overflow, false);
-	crew->improved = crew->serve_due = crew->cut = false;
+	atomic_store(&crew->safety_asked, false);
+	crew->improved = crew->serve_due = crew->safety_due = crew->cut = false;
+	crew->safety_sims = 0;
 	crew->finished = 0;
 	crew->start = now(crew->planner);
 	for (int i = 0; i < crew->worker_count; i++) {
@@ -277,15 +295,24 @@ static uint64_t sum(const struct crew *crew, int kind)
 static void sum_up(struct crew *crew)
 {
 	struct planner *planner = crew->planner;
-	planner->state_count = atomic_load(&crew->state_count);
-	if (planner->state_count > STATES_MAX)
-		planner->state_count = STATES_MAX;
 	planner->cut = crew->cut;
 	planner->nodes = sum(crew, COUNT_NODES);
-	planner->sims = sum(crew, COUNT_SIMS);
+	planner->sims = sum(crew, COUNT_SIMS) + crew->safety_sims;
 	planner->tried = sum(crew, COUNT_TRIED);
 	planner->landed = sum(crew, COUNT_LANDED);
 	planner->refined = sum(crew, COUNT_REFINED);
+}
+
+/* Under the lock: it is a simulation or two. */
+static void propose_contact(struct crew *crew)
+{
+	struct planner *planner = crew->planner;
+	crew->safety_due = false;
+	if (best_solutions(planner))
+		return;
+	planner->sims = 0;
+	crew->improved = safety_find(planner, false);
+	crew->safety_sims += planner->sims;
 }
 
 void crew_run(struct crew *crew, plan_progress_fn *progress, void *context, struct plan_result *result)
@@ -303,6 +330,8 @@ void crew_run(struct crew *crew, plan_progress_fn *progress, void *context, stru
 			pthread_mutex_unlock(&crew->lock);
 			progress(context, result);
 			pthread_mutex_lock(&crew->lock);
+		} else if (crew->safety_due) {
+			propose_contact(crew);
 		} else if (crew->serve_due) {
 			crew->serve_due = false;
 			crew->share->serve(crew);
@@ -313,6 +342,8 @@ void crew_run(struct crew *crew, plan_progress_fn *progress, void *context, stru
 	pthread_mutex_unlock(&crew->lock);
 	pool_end(planner->pool);
 	sum_up(crew);
+	int states = atomic_load(&crew->state_count);
+	planner->state_count = states < STATES_MAX ? states : STATES_MAX;
 	planner->overflow |= planner->frontier.overflow || atomic_load(&crew->overflow);
 	for (int i = 0; i < crew->worker_count; i++)
 		planner->overflow |= crew->worker[i].open.overflow;
