@@ -118,10 +118,22 @@ static int check_route(const char *url, char *err, size_t err_size)
 	return r;
 }
 
+/* LCM itself would say it on stderr. */
+static int check_scheme(const char *url, char *err, size_t err_size)
+{
+	static const char *const known[] = {"udpm://", "file://", "memq://", "tcpq://"};
+	for (size_t i = 0; i < sizeof known / sizeof known[0]; i++)
+		if (strncmp(url, known[i], strlen(known[i])) == 0)
+			return 0;
+	snprintf(err, err_size, "bus: \"%s\" is no address, wanted udpm://GROUP:PORT or file://LOG", url);
+	return -EINVAL;
+}
+
 int bus_open(struct bus **out, const char *url, char *err, size_t err_size)
 {
 	*out = NULL;
-	int r = check_route(url, err, err_size);
+	int r = check_scheme(url, err, err_size);
+	r = r < 0 ? r : check_route(url, err, err_size);
 	if (r < 0)
 		return r;
 	struct bus *bus = calloc(1, sizeof *bus);
