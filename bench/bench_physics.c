@@ -203,11 +203,11 @@ static void check_potted(const struct scene *s, int ball)
 		fprintf(stderr, "bench: the ball meant to fall did not\n");
 }
 
-static void bench_pots(struct report *report, const char *model, const char *suffix)
+static void bench_pots(struct report *report, const struct table *table, const char *model, const char *suffix)
 {
 	static struct scene s;
-	char name[32];
-	s.table = scene_snooker_table();
+	char name[48];
+	s.table = *table;
 	set_model(&s, model);
 	place_pot(&s);
 	s.count = 2;
@@ -250,8 +250,12 @@ int main(int argc, char **argv)
 	struct report *report = report_open(argv[1], "bench.json");
 	bench_roots(report);
 	bench_contacts(report);
-	bench_pots(report, "simple", "");
-	bench_pots(report, "real", "_real");
+	/* On the table of the thesis, whose program is the yardstick, and on a full-size one. */
+	const struct table thesis = scene_thesis_table(), full = scene_snooker_table();
+	bench_pots(report, &thesis, "simple", "");
+	bench_pots(report, &thesis, "real", "_real");
+	bench_pots(report, &full, "simple", "_12ft");
+	bench_pots(report, &full, "real", "_12ft_real");
 	bench_break(report, "simple", "break22");
 	bench_break(report, "real", "break22_real");
 	bench_break(report, "real-mathavan", "break22_mathavan");
