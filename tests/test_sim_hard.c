@@ -542,6 +542,26 @@ START_TEST(tip_hit_head_on)
 }
 END_TEST
 
+/* A ball that stands still but for its topspin, and one that is drawn back through its own start. */
+START_TEST(driven_by_spin_alone)
+{
+	struct table table = scene_box_table(3.5, 1.7);
+	struct model model = open_model("simple");
+	for (int k = 0; k < 2; k++) {
+		struct ball ball[2] = {ball_at(COLOUR_WHITE, (vec2){0, 0}),
+				       ball_at(COLOUR_RED, (vec2){(k ? -1 : 1) * (2 * table.ball_radius + 0.02), 0})};
+		ball[0].vel.x = k ? 0.2 : 0;
+		ball[0].spin[1] = k ? -80 : 80;
+		struct sim sim;
+		sim_init(&sim, &table, &model, ball, 2);
+		run(&sim);
+		ck_assert_ptr_nonnull(first_of(EVENT_BALL_BALL));
+		ck_assert_double_gt(fabs(sim.ball[1].pos.x - ball[1].pos.x), 0.01);
+		ck_assert_double_ge(least_distance(&sim), 2 * table.ball_radius - 1e-9);
+	}
+}
+END_TEST
+
 /* ---- speeds ------------------------------------------------------------------------------------------------------------ */
 
 START_TEST(slowest_and_fastest)
@@ -699,6 +719,7 @@ Suite *test_suite(void)
 	tcase_add_test(hard, two_rolling_reds_pressed_together);
 	tcase_add_test(hard, along_a_cushion_at_exactly_r);
 	tcase_add_test(hard, strong_swerve_hits_and_misses);
+	tcase_add_test(hard, driven_by_spin_alone);
 	tcase_add_test(hard, both_jaws_rattled);
 	tcase_add_test(hard, tip_hit_head_on);
 	tcase_add_test(hard, slowest_and_fastest);

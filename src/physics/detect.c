@@ -20,7 +20,7 @@ struct motion detect_motion(const struct table *table, const struct ball *ball, 
 	if (ball->phase == BALL_SLIDING) {
 		double a = table->material.mu_slide * table->material.gravity;
 		m.reach = m.speed * duration + 0.5 * a * duration * duration;
-		m.straight = fabs(vec2_cross(ball->vel, m.acceleration)) <= ROUNDING * m.speed * a;
+		m.straight = m.speed > 0 && fabs(vec2_cross(ball->vel, m.acceleration)) <= ROUNDING * m.speed * a;
 	} else {
 		m.reach = 0.5 * m.speed * duration;
 	}
@@ -35,8 +35,8 @@ static double curved_entry(vec2 p, vec2 v, vec2 a, double gap, double horizon)
 	return roots_quartic_entry(c, horizon);
 }
 
-/* The same where a is parallel to v: a chord of the circle first, then the time along the line. gap = p.p - distance^2 > 0.
- * Only the way up to the turning point of a sliding ball that comes back is taken; -1 asks for the general case. */
+/* The same where a is parallel to v, v not zero: a chord of the circle first, then the time along the line.
+ * gap = p.p - distance^2 > 0. A sliding ball that turns back within the horizon is a general case: -1. */
 static double straight_entry(vec2 p, vec2 v, vec2 a, double gap, double distance2, double horizon)
 {
 	double v2 = vec2_norm2(v), pv = vec2_dot(p, v), va = vec2_dot(v, a);
@@ -236,7 +236,10 @@ static void try_cushion(struct path *path, int index)
 	bool behind = !unbounded && d[0] < -radius;
 	if (behind && d[2] >= 0) /* only a bent way leads out from behind the line and in again */
 		return;
-	path->count->quadratic++;
+	if (d[2] == 0)
+		path->count->linear++;
+	else
+		path->count->quadratic++;
 	bool beside = behind || (d[0] < 0 && !unbounded && foot_excess(path, c, 0) > 0);
 	double t = beside ? later_entry(d, path->horizon) : roots_quadratic_entry(d[0], d[1], d[2], path->horizon);
 	double excess = t < INFINITY ? foot_excess(path, c, t) : 0;

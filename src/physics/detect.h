@@ -10,7 +10,7 @@
 struct solve_count {
 	uint64_t quartic;	/* both balls or a curved path */
 	uint64_t quadratic;	/* straight paths, equal accelerations, cushions */
-	uint64_t linear;	/* equal velocities and accelerations but one */
+	uint64_t linear;	/* cushions, no acceleration across them */
 	uint64_t culled;	/* out of reach, moving apart, at rest */
 };
 
