@@ -1,11 +1,19 @@
 #include "search/candidate.h"
 
 #include <assert.h>
+#include <stdlib.h>
 
 #include "physics/inverse.h"
 
-/* Share of a pocket's radius that the outermost aims lie off its middle; and what such an aim costs, so that the middle comes first. */
-static const double AIM_SPREAD = 0.8, AIM_COST = 0.25;
+/* Aims beside a pocket's middle: across it and towards the bed, shares of its radius; each on both sides. A ball that comes flat along a
+ * cushion must fall at the front of a pocket, before it meets the far jaw or the near nose. */
+static const struct {
+	double across, front;
+} aim_place[] = {{0, 0}, {0.5, 0.8}, {0.8, 0}, {0.2, 0.9}, {0.9, 0.35}};
+/* What such an aim costs, so that the middle comes first. */
+static const double AIM_COST = 0.25;
+/* Share of a pocket's radius that the middle of a ball along a cushion may lie off its middle. */
+static const double ALONG_SPREAD = 0.8;
 
 /* A ball this near to a cushion (m) cannot be hit so that it goes straight for a pocket along it: the one that strikes it would meet the
  * cushion first. It is played against the cushion by a small angle, and comes off it by the same. */
@@ -20,7 +28,7 @@ static bool along_point(const struct scene *scene, int pocket, vec2 from, vec2 *
 		vec2 along = vec2_perp(m->normal);
 		double ahead = vec2_dot(vec2_sub(p->centre, from), along);
 		vec2 foot = vec2_madd(from, ahead, along);
-		if (vec2_dot(vec2_sub(from, m->point), m->normal) > FROZEN || vec2_dist(foot, p->centre) > AIM_SPREAD * p->radius)
+		if (vec2_dot(vec2_sub(from, m->point), m->normal) > FROZEN || vec2_dist(foot, p->centre) > ALONG_SPREAD * p->radius)
 			continue;
 		*point = vec2_madd(foot, -fabs(ahead) * tan(ALONG_TILT), m->normal);
 		return true;
@@ -31,9 +39,11 @@ static bool along_point(const struct scene *scene, int pocket, vec2 from, vec2 *
 static vec2 aim_point(const struct scene *scene, int pocket, int aim)
 {
 	const struct pocket *p = &scene->table->pocket[pocket];
-	int outermost = (scene->profile->aims - 1) / 2;
-	double off = outermost > 0 ? AIM_SPREAD * p->radius * aim / outermost : 0;
-	return vec2_madd(p->centre, off, vec2_perp(p->normal));
+	int place = abs(aim);
+	assert(place < (int)(sizeof aim_place / sizeof aim_place[0]));
+	double across = aim < 0 ? -aim_place[place].across : aim_place[place].across;
+	vec2 point = vec2_madd(p->centre, across * p->radius, vec2_perp(p->normal));
+	return vec2_madd(point, aim_place[place].front * p->radius, p->normal);
 }
 
 struct node candidate_root(const struct scene *scene, int pocket, int aim)
