@@ -234,10 +234,10 @@ static void solve_stage(const struct impact *im, double h, double inverse[SLIPS]
  * m/s. */
 static double step(const struct impact *im, double h, const double rates[DIM], double j[SLIPS][SLIPS], double z[DIM])
 {
-	double matrix[SLIPS][SLIPS], inverse[SLIPS][SLIPS], k[6][DIM];
+	double matrix[SLIPS][SLIPS], inverse[SLIPS][SLIPS], k[6][DIM], per_h = 1 / h;
 	for (int i = 0; i < SLIPS; i++)
 		for (int l = 0; l < SLIPS; l++)
-			matrix[i][l] = (i == l ? 1 / (h * GAMMA) : 0) - j[i][l];
+			matrix[i][l] = (i == l ? per_h / GAMMA : 0) - j[i][l];
 	invert(matrix, inverse);
 	for (int i = 0; i < DIM; i++)
 		z[i] = im->z[i];
@@ -252,9 +252,11 @@ static double step(const struct impact *im, double h, const double rates[DIM], d
 			derivative(im, z, right);
 		for (int i = 0; i < DIM && stage == 0; i++)
 			right[i] = rates[i];
-		for (int i = 0; i < DIM; i++)
-			for (int l = 0; l < stage; l++)
-				right[i] += COUPLE[stage][l] / h * k[l][i];
+		for (int l = 0; l < stage; l++) {
+			double couple = COUPLE[stage][l] * per_h;
+			for (int i = 0; i < DIM; i++)
+				right[i] += couple * k[l][i];
+		}
 		solve_stage(im, h, inverse, right, k[stage]);
 	}
 	double error = 0;
@@ -269,9 +271,10 @@ static double step(const struct impact *im, double h, const double rates[DIM], d
 /* Slip begins in the direction in which friction against it leaves it growing. */
 static vec2 onset_direction(const struct impact *im, enum place place, struct friction f, vec2 holding, double most)
 {
-	vec2 direction = vec2_unit(vec2_scale(holding, -1));
-	for (int i = 0; i < 40; i++) {
+	vec2 direction = vec2_unit(vec2_scale(holding, -1)), before = {0, 0};
+	for (int i = 0; i < 40 && vec2_dist(direction, before) > 1e-9; i++) {
 		double rates[DIM];
+		before = direction;
 		*(place == NOSE ? &f.nose : &f.cloth) = vec2_scale(direction, -most);
 		slip_rates(im, &f, rates);
 		direction = vec2_unit(slip_of(rates, place));
