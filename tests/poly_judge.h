@@ -12,9 +12,9 @@ long double judge_slope(const long double c[JUDGE_DEGREE + 1], long double t);
 long double judge_noise(const long double c[JUDGE_DEGREE + 1], long double t);
 
 struct judge_entry {
-	bool certain;		/* the polynomial falls below its noise somewhere in [0, horizon] */
-	long double root;	/* the first such entry */
-	long double below;	/* a time up to which it has certainly come */
+	bool certain;	   /* the polynomial falls below its noise somewhere in [0, horizon] */
+	long double root;  /* the first such entry */
+	long double below; /* a time up to which it has certainly come */
 };
 struct judge_entry judge_first_entry(const long double c[JUDGE_DEGREE + 1], long double horizon);
 

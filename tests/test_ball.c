@@ -33,7 +33,8 @@ START_TEST(finite_means_every_number)
 	struct ball ball = ball_at(COLOUR_RED, (vec2){1, 2});
 	ck_assert(ball_is_finite(&ball));
 	ck_assert_int_eq(ball.phase, BALL_REST);
-	double *number[] = {&ball.pos.x, &ball.pos.y, &ball.vel.x, &ball.vel.y, &ball.spin[0], &ball.spin[1], &ball.spin[2]};
+	double *number[] = {&ball.pos.x,   &ball.pos.y,	  &ball.vel.x,	&ball.vel.y,
+			    &ball.spin[0], &ball.spin[1], &ball.spin[2]};
 	for (int i = 0; i < 7; i++) {
 		double keep = *number[i];
 		*number[i] = NAN;

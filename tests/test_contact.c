@@ -131,7 +131,8 @@ START_TEST(cushions_mirror)
 			continue;
 		struct ball b = moving((vec2){0, 0}, v, BALL_SLIDING, &table);
 		contact_cushion(&table, &model, n, 0.03, &b);
-		double e = i % 3 == 1 ? table.material.e_cushion : 1, keep = i % 3 == 2 ? 1 - table.material.loss_cushion : 1;
+		double e = i % 3 == 1 ? table.material.e_cushion : 1,
+		       keep = i % 3 == 2 ? 1 - table.material.loss_cushion : 1;
 		ck_assert_double_eq_tol(vec2_dot(b.vel, n), -e * keep * vec2_dot(v, n), 1e-14);
 		ck_assert_double_eq_tol(vec2_cross(b.vel, n), keep * vec2_cross(v, n), 1e-14);
 		if (i % 3 == 2) {
@@ -144,7 +145,7 @@ START_TEST(cushions_mirror)
 }
 END_TEST
 
-/* ---- together ---------------------------------------------------------------------------------------------------------- */
+/* ---- together ---- */
 
 /* A ball hits two that touch each other, full in the middle: the textbook's answer for elastic balls is -v/5 and
  * 2 sqrt(3) / 5 v at 30 degrees. */
@@ -197,7 +198,8 @@ START_TEST(clusters)
 			before = vec2_add(before, sim.ball[k].vel);
 			for (int m = 0; m < k; m++) {
 				vec2 n = vec2_sub(ball[k].pos, ball[m].pos);
-				if (vec2_norm(n) < 1.01 * d && vec2_dot(vec2_sub(sim.ball[m].vel, sim.ball[k].vel), n) > 0)
+				if (vec2_norm(n) < 1.01 * d &&
+				    vec2_dot(vec2_sub(sim.ball[m].vel, sim.ball[k].vel), n) > 0)
 					group.contact[group.count++] =
 						(struct event){0, EVENT_BALL_BALL, (int16_t)m, (int16_t)k};
 			}

@@ -116,7 +116,8 @@ static void judge(struct tally *tally, const long double c[5], long double horiz
 	if (64 * judge_noise(c, t) / slope > 1e-10L)
 		tally->grazing++;
 	else
-		tally->worst = fmax(tally->worst, (double)(entry.certain ? fmaxl(error, fabsl(entry.root - t)) : error));
+		tally->worst =
+			fmax(tally->worst, (double)(entry.certain ? fmaxl(error, fabsl(entry.root - t)) : error));
 }
 
 START_TEST(contact_times_of_two_balls)
@@ -147,7 +148,8 @@ START_TEST(contact_times_of_two_balls)
 		if (tally.missed + tally.invented > before && before < 5)
 			printf("pair %d: now %.17g t %.17g\n", pairs, now, t);
 	}
-	printf("%d pairs, %d met, %d missed, %d invented, %d grazing, worst error %.2g s; quartic %lu quadratic %lu culled %lu\n",
+	printf("%d pairs, %d met, %d missed, %d invented, %d grazing, worst error %.2g s; quartic %lu quadratic %lu "
+	       "culled %lu\n",
 	       pairs, tally.met, tally.missed, tally.invented, tally.grazing, tally.worst, (unsigned long)count.quartic,
 	       (unsigned long)count.quadratic, (unsigned long)count.culled);
 	fflush(stdout);

@@ -27,7 +27,8 @@ START_TEST(order_is_strict_and_total)
 		if (event_compare(&a, &b) < 0 && event_compare(&b, &c) < 0)
 			ck_assert_int_lt(event_compare(&a, &c), 0);
 	}
-	struct event a = {1, EVENT_ROLLING_REST, 0, -1}, b = {1, EVENT_BALL_BALL, 5, 6}, c = {0.5, EVENT_SPINNING_REST, 9, -1};
+	struct event a = {1, EVENT_ROLLING_REST, 0, -1}, b = {1, EVENT_BALL_BALL, 5, 6},
+		     c = {0.5, EVENT_SPINNING_REST, 9, -1};
 	ck_assert_int_lt(event_compare(&b, &a), 0);
 	ck_assert_int_lt(event_compare(&c, &b), 0);
 }
@@ -54,8 +55,8 @@ END_TEST
 /* The figure of thesis 4.6.3.4: white hits red 1, white stops, red 1 falls; red 2 lies still throughout. */
 START_TEST(nodes_of_the_thesis_example)
 {
-	struct event strike = {0, EVENT_STRIKE, 0, -1}, hit = {1, EVENT_BALL_BALL, 0, 1}, stop = {2, EVENT_ROLLING_REST, 0, -1},
-		     fall = {3, EVENT_POCKET, 1, 0};
+	struct event strike = {0, EVENT_STRIKE, 0, -1}, hit = {1, EVENT_BALL_BALL, 0, 1},
+		     stop = {2, EVENT_ROLLING_REST, 0, -1}, fall = {3, EVENT_POCKET, 1, 0};
 	ck_assert_int_eq(event_node(&strike, 0, BALL_SLIDING), NODE_ENERGY_INPUT);
 	ck_assert_int_eq(event_node(&strike, 1, BALL_REST), NODE_NO_ENERGY);
 	ck_assert_int_eq(event_node(&hit, 0, BALL_SLIDING), NODE_ENERGY_TRANSFER);

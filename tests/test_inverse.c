@@ -35,7 +35,8 @@ START_TEST(branches_meet)
 	const struct material *m = &table.material;
 	for (double v = 0.1; v < 8; v += 0.1) {
 		double slide = 12.0 / 49 * v * v / (m->mu_slide * m->gravity);
-		double before = leg_forward(&table, v, slide * (1 - 1e-12)), after = leg_forward(&table, v, slide * (1 + 1e-12));
+		double before = leg_forward(&table, v, slide * (1 - 1e-12)),
+		       after = leg_forward(&table, v, slide * (1 + 1e-12));
 		ck_assert_double_eq_tol(before, 5.0 / 7 * v, 1e-10);
 		ck_assert_double_eq_tol(after, 5.0 / 7 * v, 1e-10);
 		ck_assert_double_eq_tol(leg_backward(&table, 5.0 / 7 * v, slide * (1 - 1e-12)), v, 1e-10);

@@ -22,7 +22,8 @@ END_TEST
 START_TEST(unknown_names_change_nothing)
 {
 	struct model model = {.cushion = CUSHION_MODEL_MATHAVAN};
-	ck_assert(!model_from_name("", &model) && !model_from_name("Real", &model) && !model_from_name("simple ", &model));
+	ck_assert(!model_from_name("", &model) && !model_from_name("Real", &model) &&
+		  !model_from_name("simple ", &model));
 	ck_assert(model.cushion == CUSHION_MODEL_MATHAVAN);
 }
 END_TEST

@@ -46,7 +46,8 @@ START_TEST(sliding_agrees_with_integration)
 		enum event_kind kind;
 		double end = 0.99 * motion_phase_end(&b, &table, &kind), t = 0;
 		double y[6] = {b.pos.x, b.pos.y, b.vel.x, b.vel.y, b.spin[0], b.spin[1]};
-		gsl_odeiv2_driver *driver = gsl_odeiv2_driver_alloc_y_new(&system, gsl_odeiv2_step_rk8pd, 1e-4, 1e-12, 1e-12);
+		gsl_odeiv2_driver *driver =
+			gsl_odeiv2_driver_alloc_y_new(&system, gsl_odeiv2_step_rk8pd, 1e-4, 1e-12, 1e-12);
 		ck_assert_int_eq(gsl_odeiv2_driver_apply(driver, &t, end, y), GSL_SUCCESS);
 		gsl_odeiv2_driver_free(driver);
 		struct ball after = motion_advance(&b, &table, end);
@@ -124,7 +125,8 @@ START_TEST(parts_add_up)
 		enum event_kind kind;
 		double end = motion_phase_end(&b, &table, &kind), part = random_in(&r, 0, 1) * end;
 		struct ball whole = motion_advance(&b, &table, 0.9 * end);
-		struct ball first = motion_advance(&b, &table, 0.9 * part), sum = motion_advance(&first, &table, 0.9 * (end - part));
+		struct ball first = motion_advance(&b, &table, 0.9 * part),
+			    sum = motion_advance(&first, &table, 0.9 * (end - part));
 		ck_assert_double_le(vec2_dist(whole.pos, sum.pos), 1e-12);
 		ck_assert_double_le(vec2_dist(whole.vel, sum.vel), 1e-12);
 		ck_assert_double_le(fabs(whole.spin[2] - sum.spin[2]), 1e-9);

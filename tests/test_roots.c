@@ -25,7 +25,7 @@ static double decades(struct random *r, double low, double high)
 	return sign_of(r) * pow(10, random_in(r, low, high));
 }
 
-/* ---- families ---------------------------------------------------------------------------------------------------------- */
+/* ---- families ---- */
 
 static void multiply(double c[5], int *degree, double root)
 {
@@ -100,7 +100,8 @@ static void root_at_start(struct random *r, double c[5])
 /* |p + v t + a t^2 / 2|^2 - D^2 of two balls on a table. */
 static void two_balls(struct random *r, double c[5])
 {
-	double px = random_in(r, -1, 1), py = random_in(r, -0.5, 0.5), vx = random_in(r, -5, 5), vy = random_in(r, -5, 5);
+	double px = random_in(r, -1, 1), py = random_in(r, -0.5, 0.5), vx = random_in(r, -5, 5),
+	       vy = random_in(r, -5, 5);
 	double ax = random_in(r, -4, 4), ay = random_in(r, -4, 4);
 	c[0] = px * px + py * py - 0.0523 * 0.0523;
 	c[1] = 2 * (px * vx + py * vy);
@@ -125,7 +126,7 @@ static const struct {
 };
 enum { FAMILIES = sizeof families / sizeof *families };
 
-/* ---- quartic ----------------------------------------------------------------------------------------------------------- */
+/* ---- quartic ---- */
 
 struct tally {
 	int entries, missed, invented;
@@ -228,7 +229,7 @@ START_TEST(quartic_agrees_with_gsl)
 }
 END_TEST
 
-/* ---- named cases ------------------------------------------------------------------------------------------------------- */
+/* ---- named cases ---- */
 
 START_TEST(start_on_the_root_counts_by_approach)
 {
@@ -273,7 +274,8 @@ START_TEST(quadratic_agrees_with_extended_precision)
 {
 	struct random r = random_begin("quadratic_agrees_with_extended_precision");
 	for (int i = 0; i < 100000; i++) {
-		double c[5] = {decades(&r, -8, 2), decades(&r, -8, 2), random_u64(&r) % 8 ? decades(&r, -8, 2) : 0, 0, 0};
+		double c[5] = {decades(&r, -8, 2), decades(&r, -8, 2), random_u64(&r) % 8 ? decades(&r, -8, 2) : 0, 0,
+			       0};
 		struct tally tally = {0};
 		judge(&tally, c, 3, roots_quadratic_entry(c[0], c[1], c[2], 3));
 		ck_assert_msg(tally.missed + tally.invented == 0, "%a %a %a", c[0], c[1], c[2]);

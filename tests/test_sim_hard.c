@@ -100,7 +100,7 @@ static int step_to_rest(struct sim *sim)
 	return contacts;
 }
 
-/* ---- two balls that roll the same way ---------------------------------------------------------------------------------- */
+/* ---- two balls that roll the same way ---- */
 
 START_TEST(rolling_after_each_other)
 {
@@ -152,7 +152,8 @@ START_TEST(side_by_side_at_equal_speed)
 		double apart = k == 0 ? d : k == 1 ? d + 1e-12 : d + 1e-3;
 		vec2 v = {0.7, 0.1};
 		vec2 side = vec2_scale(vec2_perp(vec2_unit(v)), apart);
-		struct ball ball[2] = {rolling(&table, (vec2){-1, 0}, v), rolling(&table, vec2_add((vec2){-1, 0}, side), v)};
+		struct ball ball[2] = {rolling(&table, (vec2){-1, 0}, v),
+				       rolling(&table, vec2_add((vec2){-1, 0}, side), v)};
 		struct sim sim;
 		sim_init(&sim, &table, &model, ball, 2);
 		struct event event;
@@ -162,7 +163,7 @@ START_TEST(side_by_side_at_equal_speed)
 }
 END_TEST
 
-/* ---- grazing ----------------------------------------------------------------------------------------------------------- */
+/* ---- grazing ---- */
 
 START_TEST(grazing)
 {
@@ -172,7 +173,8 @@ START_TEST(grazing)
 	for (int i = 0; i < 6; i++) {
 		for (int kind = 0; kind < 2; kind++) {
 			vec2 at = {-0.5, 2 * table.ball_radius + miss[i]}, v = {2, 0};
-			struct ball ball[2] = {kind ? rolling(&table, at, v) : sliding(at, v), ball_at(COLOUR_RED, (vec2){0, 0})};
+			struct ball ball[2] = {kind ? rolling(&table, at, v) : sliding(at, v),
+					       ball_at(COLOUR_RED, (vec2){0, 0})};
 			struct sim sim;
 			sim_init(&sim, &table, &model, ball, 2);
 			bool hit = false;
@@ -208,7 +210,7 @@ START_TEST(rest_exactly_at_contact)
 }
 END_TEST
 
-/* ---- touching ---------------------------------------------------------------------------------------------------------- */
+/* ---- touching ---- */
 
 START_TEST(frozen_pair)
 {
@@ -287,7 +289,7 @@ START_TEST(in_the_corner_touching_two)
 }
 END_TEST
 
-/* ---- racks and rows ---------------------------------------------------------------------------------------------------- */
+/* ---- racks and rows ---- */
 
 START_TEST(rack_of_fifteen_struck)
 {
@@ -389,7 +391,7 @@ START_TEST(two_at_once_symmetric_to_the_last_bit)
 }
 END_TEST
 
-/* ---- contacts that do not end ------------------------------------------------------------------------------------------ */
+/* ---- contacts that do not end ---- */
 
 /* A ball with much forward spin is held between the two that it drives. */
 START_TEST(two_reds_chattering)
@@ -420,7 +422,8 @@ START_TEST(two_rolling_reds_pressed_together)
 	struct table table = scene_box_table(3.5, 1.7);
 	struct model model = open_model("simple");
 	double d = 2 * table.ball_radius;
-	struct ball ball[2] = {rolling(&table, (vec2){0, 0}, (vec2){0.8, 0.3}), rolling(&table, (vec2){0, d}, (vec2){0.2, 0.3})};
+	struct ball ball[2] = {rolling(&table, (vec2){0, 0}, (vec2){0.8, 0.3}),
+			       rolling(&table, (vec2){0, d}, (vec2){0.2, 0.3})};
 	struct sim sim;
 	sim_init(&sim, &table, &model, ball, 2);
 	step_to_rest(&sim);
@@ -445,7 +448,7 @@ START_TEST(along_a_cushion_at_exactly_r)
 }
 END_TEST
 
-/* ---- swerve ------------------------------------------------------------------------------------------------------------ */
+/* ---- swerve ---- */
 
 /* Where a swerved cue ball is, far along. */
 static vec2 swerve_path(const struct table *table, const struct shot *shot, double t)
@@ -467,7 +470,8 @@ START_TEST(strong_swerve_hits_and_misses)
 	double t = 0.5;
 	vec2 at = swerve_path(&table, &shot, t);
 	ck_assert_double_gt(fabs(at.y), 3 * table.ball_radius);
-	/* a ball on the curve is hit though the straight line misses it; one on the line is missed though it would be hit */
+	/* a ball on the curve is hit though the straight line misses it; one on the line is missed though it would be
+	 * hit */
 	for (int on_curve = 0; on_curve < 2; on_curve++) {
 		struct ball ball[2] = {ball_at(COLOUR_WHITE, (vec2){-1, 0}),
 				       ball_at(COLOUR_RED, on_curve ? at : (vec2){at.x, 0})};
@@ -483,7 +487,7 @@ START_TEST(strong_swerve_hits_and_misses)
 }
 END_TEST
 
-/* ---- jaws -------------------------------------------------------------------------------------------------------------- */
+/* ---- jaws ---- */
 
 START_TEST(both_jaws_rattled)
 {
@@ -562,7 +566,7 @@ START_TEST(driven_by_spin_alone)
 }
 END_TEST
 
-/* ---- speeds ------------------------------------------------------------------------------------------------------------ */
+/* ---- speeds ---- */
 
 START_TEST(slowest_and_fastest)
 {
@@ -589,7 +593,7 @@ START_TEST(slowest_and_fastest)
 }
 END_TEST
 
-/* ---- symmetries -------------------------------------------------------------------------------------------------------- */
+/* ---- symmetries ---- */
 
 static vec2 turn(vec2 a, double angle)
 {
@@ -623,7 +627,8 @@ START_TEST(table_turned_by_30_degrees)
 	for (int k = 0; k < 50; k++) {
 		struct ball a[4], b[4];
 		for (int i = 0; i < 4; i++) {
-			a[i] = ball_at(COLOUR_RED, (vec2){-1.2 + 0.7 * i + random_in(&r, -0.3, 0.3), random_in(&r, -0.7, 0.7)});
+			a[i] = ball_at(COLOUR_RED,
+				       (vec2){-1.2 + 0.7 * i + random_in(&r, -0.3, 0.3), random_in(&r, -0.7, 0.7)});
 			b[i] = a[i];
 			b[i].pos = turn(a[i].pos, angle);
 		}
@@ -642,26 +647,29 @@ START_TEST(table_turned_by_30_degrees)
 			ck_assert_int_eq(e.other, f.other);
 			ck_assert_double_eq_tol(e.time, f.time, 1e-9);
 			for (int i = 0; i < 4; i++)
-				ck_assert_double_le(vec2_dist(turn(sim_ball(&one, i).pos, angle), sim_ball(&other, i).pos),
-						    1e-9);
+				ck_assert_double_le(
+					vec2_dist(turn(sim_ball(&one, i).pos, angle), sim_ball(&other, i).pos), 1e-9);
 		}
 	}
 }
 END_TEST
 
-/* Rolling has no memory of direction but the sign of friction: run the leg back with the acceleration reversed in time. */
+/* Rolling has no memory of direction but the sign of friction: run the leg back with the acceleration reversed in time.
+ */
 START_TEST(time_reversed_leg_of_a_rolling_ball)
 {
 	struct table table = scene_box_table(3.5, 1.7);
 	struct random r = random_begin("time_reversed_leg");
 	for (int k = 0; k < 1000; k++) {
-		struct ball start = rolling(&table, (vec2){0, 0}, vec2_scale(vec2_from_angle(random_in(&r, -3, 3)), random_in(&r, 0.1, 5)));
+		struct ball start = rolling(&table, (vec2){0, 0},
+					    vec2_scale(vec2_from_angle(random_in(&r, -3, 3)), random_in(&r, 0.1, 5)));
 		enum event_kind kind;
 		double t = random_in(&r, 0, 1) * motion_phase_end(&start, &table, &kind);
 		struct ball end = motion_advance(&start, &table, t);
 		/* backward in time the ball comes from `end` with the same (now speeding) acceleration */
-		struct ball back = motion_advance_by(&(struct ball){.pos = end.pos, .vel = vec2_scale(end.vel, -1), .phase = BALL_ROLLING},
-						     &table, motion_acceleration(&start, &table), t);
+		struct ball back = motion_advance_by(
+			&(struct ball){.pos = end.pos, .vel = vec2_scale(end.vel, -1), .phase = BALL_ROLLING}, &table,
+			motion_acceleration(&start, &table), t);
 		ck_assert_double_le(vec2_dist(back.pos, start.pos), 1e-12 * (1 + vec2_norm(end.pos)));
 		ck_assert_double_le(vec2_dist(vec2_scale(back.vel, -1), start.vel), 1e-13 * (1 + vec2_norm(start.vel)));
 	}

@@ -29,7 +29,8 @@ START_TEST(normals_point_to_the_playing_side)
 			if (c->main_rail)
 				ck_assert_double_gt(vec2_dot(c->normal, vec2_scale(c->a, -1)), 0);
 			else
-				ck_assert_double_gt(vec2_dot(c->normal, vec2_sub(nearest_pocket(&table[k], c->a), c->a)), 0);
+				ck_assert_double_gt(
+					vec2_dot(c->normal, vec2_sub(nearest_pocket(&table[k], c->a), c->a)), 0);
 			ck_assert_double_le(vec2_dist(vec2_madd(c->a, c->span, c->along), c->b), 1e-15);
 		}
 	}

@@ -2,8 +2,8 @@
 
 #include <string.h>
 
-static const char *const colour_names[COLOUR_COUNT] = {"WHITE", "RED",  "YELLOW", "GREEN",  "BROWN",
-						       "BLUE",  "PINK", "BLACK",  "UNKNOWN"};
+static const char *const colour_names[COLOUR_COUNT] = {"WHITE", "RED",	"YELLOW", "GREEN",  "BROWN",
+						       "BLUE",	"PINK", "BLACK",  "UNKNOWN"};
 
 const char *ball_colour_name(enum ball_colour colour)
 {

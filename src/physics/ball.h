@@ -1,5 +1,5 @@
-/* A ball: what it is and how it moves. SI units, table frame (origin at the bed's centre, +x to the black cushion, +y to
- * its left, z up). */
+/* A ball: what it is and how it moves. SI units, table frame (origin at the bed's centre, +x to the black cushion, +y
+ * to its left, z up). */
 #ifndef BILLIARD_PHYSICS_BALL_H
 #define BILLIARD_PHYSICS_BALL_H
 
@@ -21,14 +21,14 @@ enum ball_colour {
 	COLOUR_COUNT = 9
 };
 
-/* REST: no motion at all. SPINNING: on the spot about the vertical axis. ROLLING: the contact point does not slip (it may
- * turn about the vertical axis besides). SLIDING: the contact point slips. POTTED: out of the system. */
+/* REST: no motion at all. SPINNING: on the spot about the vertical axis. ROLLING: the contact point does not slip (it
+ * may turn about the vertical axis besides). SLIDING: the contact point slips. POTTED: out of the system. */
 enum ball_phase { BALL_REST, BALL_SPINNING, BALL_ROLLING, BALL_SLIDING, BALL_POTTED };
 
 struct ball {
-	vec2 pos;		/* m, centre, seen from above; height is always one radius */
-	vec2 vel;		/* m/s */
-	double spin[3];		/* rad/s about x, y, z */
+	vec2 pos;	/* m, centre, seen from above; height is always one radius */
+	vec2 vel;	/* m/s */
+	double spin[3]; /* rad/s about x, y, z */
 	enum ball_phase phase;
 	enum ball_colour colour;
 };

@@ -4,10 +4,11 @@
 #include "physics/contact_real.h"
 #include "physics/motion.h"
 
-/* Contacts within this time are one instant: above the rounding of a contact's time, and at 20 m/s less than 1e-10 m. */
+/* Contacts within this time are one instant: above the rounding of a contact's time, and at 20 m/s less than 1e-10 m.
+ */
 static const double SAME_INSTANT = 4e-12; /* s */
-/* Two bodies that press on each other meet again no sooner than this. The restitution laws have no force that lasts; without
- * a bound, a pressed pair bounces ever faster (Luding and McNamara 1998 bound it likewise). */
+/* Two bodies that press on each other meet again no sooner than this. The restitution laws have no force that lasts;
+ * without a bound, a pressed pair bounces ever faster (Luding and McNamara 1998 bound it likewise). */
 static const double PRESS_INTERVAL = 2e-3; /* s */
 /* At most this share of the pair's root mean square speed goes into keeping them apart. */
 static const double LIFT_SHARE = 0.2;
@@ -43,12 +44,12 @@ void collide_collect(const struct sim *sim, const struct event *first, struct gr
 		int a = __builtin_ctz(low);
 		uint32_t higher = partners[a] & ~((2u << a) - 1);
 		for (; higher && group->count < GROUP_MAX; higher &= higher - 1)
-			group->contact[group->count++] =
-				(struct event){first->time, EVENT_BALL_BALL, (int16_t)a, (int16_t)__builtin_ctz(higher)};
+			group->contact[group->count++] = (struct event){first->time, EVENT_BALL_BALL, (int16_t)a,
+									(int16_t)__builtin_ctz(higher)};
 	}
 }
 
-/* ---- energy ---------------------------------------------------------------------------------------------------------- */
+/* ---- energy ---- */
 
 /* Twice the energy per mass, m^2/s^2. */
 static double energy(const struct ball *ball, double radius)
@@ -64,7 +65,7 @@ static void scale_motion(struct ball *ball, double k)
 		ball->spin[i] *= k;
 }
 
-/* ---- pressing contacts ----------------------------------------------------------------------------------------------- */
+/* ---- pressing contacts ---- */
 
 /* Separation speed that keeps two bodies apart for PRESS_INTERVAL when they press with acceleration `press`. */
 static double lift_speed(const struct sim *sim, double press, double rms_speed)
@@ -76,8 +77,8 @@ static double lift_speed(const struct sim *sim, double press, double rms_speed)
 	return lift < most ? lift : most;
 }
 
-/* Balls that leave a contact slower than the cloth presses them together get the speed to stay apart a while, taken from
- * their own motion: the energy stays. */
+/* Balls that leave a contact slower than the cloth presses them together get the speed to stay apart a while, taken
+ * from their own motion: the energy stays. */
 static void lift_balls(const struct sim *sim, struct ball *a, struct ball *b)
 {
 	double r = sim->table->ball_radius;
@@ -117,7 +118,7 @@ static void lift_at_cushion(const struct sim *sim, vec2 normal, struct ball *bal
 	motion_classify(ball, sim->table);
 }
 
-/* ---- contacts of one instant ----------------------------------------------------------------------------------------- */
+/* ---- contacts of one instant ---- */
 
 struct joint {
 	struct ball *a, *b;
@@ -166,8 +167,9 @@ static int most_contacts(const struct group *group)
 	return most;
 }
 
-/* Friction of the contacts, each with its own normal impulse and at most its share of the slip; all from the same state. The
- * normal impulses have left the slips as they were but for what one contact's normal is to another's tangent. */
+/* Friction of the contacts, each with its own normal impulse and at most its share of the slip; all from the same
+ * state. The normal impulses have left the slips as they were but for what one contact's normal is to another's
+ * tangent. */
 static void rub_joints(const struct table *table, const struct joint *joint, int count, double share)
 {
 	vec2 impulse[GROUP_MAX];

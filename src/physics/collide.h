@@ -15,8 +15,8 @@ struct group {
 /* All contacts due at first->time that hang together with first by a shared ball; in the order of event_compare(). */
 void collide_collect(const struct sim *sim, const struct event *first, struct group *group);
 
-/* Changes the balls of the group, which must have been advanced to its time. Of contacts that share a ball the impulses are
- * solved at once, so that mirrored positions give mirrored results. */
+/* Changes the balls of the group, which must have been advanced to its time. Of contacts that share a ball the impulses
+ * are solved at once, so that mirrored positions give mirrored results. */
 void collide_balls(struct sim *sim, const struct group *group);
 
 /* A ball at a cushion, tip or jaw; normal: unit, from the cushion towards the ball. */

@@ -40,7 +40,8 @@ static void exchange(double restitution, struct ball *a, struct ball *b)
 	b->vel = vec2_madd(b->vel, impulse, n);
 }
 
-/* 4.56 to 4.61: what topspin adds to the tangential part; at most the incoming speed. v is the velocity after the loss. */
+/* 4.56 to 4.61: what topspin adds to the tangential part; at most the incoming speed. v is the velocity after the loss.
+ */
 static vec2 topspin(const struct material *m, enum ball_phase phase, vec2 v, vec2 tangential)
 {
 	if (phase != BALL_ROLLING || m->topspin_variant == 0)

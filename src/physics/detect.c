@@ -134,7 +134,7 @@ double detect_pair(const struct table *table, const struct ball *a, const struct
 	return now + t;
 }
 
-/* ---- cushions, jaws and pockets --------------------------------------------------------------------------------------- */
+/* ---- cushions, jaws and pockets ---- */
 
 struct box {
 	vec2 low, high;

@@ -8,20 +8,20 @@
 
 /* What the search for contacts cost: equations solved, and cases settled without one. */
 struct solve_count {
-	uint64_t quartic;	/* both balls or a curved path */
-	uint64_t quadratic;	/* straight paths, equal accelerations, cushions */
-	uint64_t linear;	/* cushions, no acceleration across them */
-	uint64_t culled;	/* out of reach, moving apart, at rest */
+	uint64_t quartic;   /* both balls or a curved path */
+	uint64_t quadratic; /* straight paths, equal accelerations, cushions */
+	uint64_t linear;    /* cushions, no acceleration across them */
+	uint64_t culled;    /* out of reach, moving apart, at rest */
 };
 
 /* A ball's motion in its present phase, from the time `begin`. */
 struct motion {
-	vec2 acceleration;	/* m/s^2 */
-	double begin, end;	/* s; end INFINITY at rest */
-	double reach;		/* m; no point of the path is farther from the start */
-	double speed;		/* m/s at begin */
+	vec2 acceleration; /* m/s^2 */
+	double begin, end; /* s; end INFINITY at rest */
+	double reach;	   /* m; no point of the path is farther from the start */
+	double speed;	   /* m/s at begin */
 	enum event_kind end_kind;
-	bool straight;		/* the path is a straight line */
+	bool straight; /* the path is a straight line */
 };
 
 /* Motion of a ball from now on. */
@@ -31,8 +31,8 @@ struct motion detect_motion(const struct table *table, const struct ball *ball, 
 double detect_pair(const struct table *table, const struct ball *a, const struct motion *ma, const struct ball *b,
 		   const struct motion *mb, double now, struct solve_count *count);
 
-/* The first thing that happens to ball number index by itself: end of its phase, cushion, jaw or pocket. Time INFINITY and
- * EVENT_NONE for a ball at rest. The ball is given at motion->begin. */
+/* The first thing that happens to ball number index by itself: end of its phase, cushion, jaw or pocket. Time INFINITY
+ * and EVENT_NONE for a ball at rest. The ball is given at motion->begin. */
 struct event detect_own(const struct table *table, const struct model *model, const struct ball *ball, int index,
 			const struct motion *motion, struct solve_count *count);
 

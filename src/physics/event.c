@@ -37,15 +37,8 @@ int event_compare(const struct event *a, const struct event *b)
 
 const char *event_kind_name(enum event_kind kind)
 {
-	static const char *const names[EVENT_KIND_COUNT] = {"none",
-							    "strike",
-							    "ball_ball",
-							    "ball_linear_cushion",
-							    "ball_circular_cushion",
-							    "ball_pocket",
-							    "sliding_rolling",
-							    "rolling_spinning",
-							    "rolling_stationary",
-							    "spinning_stationary"};
+	static const char *const names[EVENT_KIND_COUNT] = {
+		"none",	       "strike",	  "ball_ball",	      "ball_linear_cushion", "ball_circular_cushion",
+		"ball_pocket", "sliding_rolling", "rolling_spinning", "rolling_stationary",  "spinning_stationary"};
 	return (unsigned)kind < EVENT_KIND_COUNT ? names[kind] : "none";
 }

@@ -9,11 +9,11 @@
 /* In the order in which events of one instant are handled. */
 enum event_kind {
 	EVENT_NONE,
-	EVENT_STRIKE,		/* ball: the struck ball */
-	EVENT_BALL_BALL,	/* ball < other, both ball indices */
-	EVENT_CUSHION,		/* other: index into table.cushion */
-	EVENT_JAW,		/* other: index into table.jaw */
-	EVENT_POCKET,		/* other: index into table.pocket */
+	EVENT_STRIKE,	 /* ball: the struck ball */
+	EVENT_BALL_BALL, /* ball < other, both ball indices */
+	EVENT_CUSHION,	 /* other: index into table.cushion */
+	EVENT_JAW,	 /* other: index into table.jaw */
+	EVENT_POCKET,	 /* other: index into table.pocket */
 	EVENT_SLIDING_ROLLING,
 	EVENT_ROLLING_SPINNING,
 	EVENT_ROLLING_REST,
@@ -22,10 +22,10 @@ enum event_kind {
 };
 
 struct event {
-	double time;		/* s since the start of the simulation */
+	double time; /* s since the start of the simulation */
 	enum event_kind kind;
-	int16_t ball;		/* index, -1 none */
-	int16_t other;		/* index by kind, -1 none */
+	int16_t ball;  /* index, -1 none */
+	int16_t other; /* index by kind, -1 none */
 };
 
 /* Node kinds of thesis 4.6.3, as they can be read off an event for one ball. */

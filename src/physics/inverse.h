@@ -14,8 +14,8 @@ double leg_backward(const struct table *table, double v_end, double way);
 double leg_rolling_forward(const struct table *table, double v_start, double way);
 double leg_rolling_backward(const struct table *table, double v_end, double way);
 
-/* Ball on resting ball, thesis model (8.113): speed of the struck ball for a hit at cut angle with cosine cos_cut in (0, 1],
- * and its inverse. */
+/* Ball on resting ball, thesis model (8.113): speed of the struck ball for a hit at cut angle with cosine cos_cut in
+ * (0, 1], and its inverse. */
 double hit_forward(const struct table *table, double v, double cos_cut);
 double hit_backward(const struct table *table, double u, double cos_cut);
 

@@ -6,30 +6,30 @@
 
 enum ball_model {
 	BALL_MODEL_ELASTIC,	/* frictionless, no loss */
-	BALL_MODEL_RESTITUTION,	/* frictionless, e_ball */
+	BALL_MODEL_RESTITUTION, /* frictionless, e_ball */
 	BALL_MODEL_THESIS,	/* 2-D elastic with speed loss and topspin variants (thesis 4.6.4.2) */
 	BALL_MODEL_FRICTIONAL	/* inelastic, friction falling with slip, throw and spin transfer (Alciatore TP A.14) */
 };
 
 enum cushion_model {
-	CUSHION_MODEL_MIRROR,		/* normal velocity reversed, spin untouched */
-	CUSHION_MODEL_RESTITUTION,	/* the same, times e_cushion */
-	CUSHION_MODEL_THESIS,		/* mirror with speed loss, rolls at once (thesis 4.6.4.3, 4.6.4.9) */
-	CUSHION_MODEL_STRONGE,		/* compliant impact at nose height (Stronge 2000), closed form */
-	CUSHION_MODEL_MATHAVAN		/* impulse integration (Mathavan, Jackson, Parkin 2010) */
+	CUSHION_MODEL_MIRROR,	   /* normal velocity reversed, spin untouched */
+	CUSHION_MODEL_RESTITUTION, /* the same, times e_cushion */
+	CUSHION_MODEL_THESIS,	   /* mirror with speed loss, rolls at once (thesis 4.6.4.3, 4.6.4.9) */
+	CUSHION_MODEL_STRONGE,	   /* compliant impact at nose height (Stronge 2000), closed form */
+	CUSHION_MODEL_MATHAVAN	   /* impulse integration (Mathavan, Jackson, Parkin 2010) */
 };
 
 enum pocket_model {
-	POCKET_MODEL_NONE,	/* no pockets, jaws or jaw cushions: the main rails only */
-	POCKET_MODEL_CIRCLE,	/* centre enters the circle; sharp jaw tips are not there (thesis 4.6.4.8), rounded ones are */
-	POCKET_MODEL_JAWS	/* jaw segments and all tips, then the circle */
+	POCKET_MODEL_NONE,   /* no pockets, jaws or jaw cushions: the main rails only */
+	POCKET_MODEL_CIRCLE, /* centre enters the circle (thesis 4.6.4.8); rounded jaw tips, no sharp ones */
+	POCKET_MODEL_JAWS    /* jaw segments and all tips, then the circle */
 };
 
 struct model {
 	enum ball_model ball;
 	enum cushion_model cushion;
 	enum pocket_model pocket;
-	bool thesis_motion;	/* topspin only as the thesis has it: balls start sliding without spin, cushions set rolling */
+	bool thesis_motion; /* no spin: a struck ball slides, then rolls; a cushion sets it rolling (4.6.4.9) */
 };
 
 /* "thesis", "simple" (restitution, circle), "simple-elastic", "real" (frictional, Stronge, jaws), "real-mathavan".

@@ -8,11 +8,11 @@
 enum { PAIR_MAX = BALL_MAX * (BALL_MAX - 1) / 2 };
 
 struct queue {
-	int count;			/* balls */
-	struct event own[BALL_MAX];	/* time INFINITY: none */
-	double pair[PAIR_MAX];		/* s; row of the higher ball, INFINITY: none */
-	double row_time[BALL_MAX];	/* s; earliest of a row */
-	int16_t row_low[BALL_MAX];	/* its lower ball; -1: none */
+	int count;		    /* balls */
+	struct event own[BALL_MAX]; /* time INFINITY: none */
+	double pair[PAIR_MAX];	    /* s; row of the higher ball, INFINITY: none */
+	double row_time[BALL_MAX];  /* s; earliest of a row */
+	int16_t row_low[BALL_MAX];  /* its lower ball; -1: none */
 };
 
 /* No events for count balls. */

@@ -119,8 +119,8 @@ static double least_bend(const struct quartic *q, double low, double high)
 	return least > 0 ? least : 0;
 }
 
-/* From a point above zero in a convex piece: the parabola with the least curvature of what is left lies below the curve, so
- * its root is not past the first root of the polynomial, and where it has none, neither has the piece: -1. */
+/* From a point above zero in a convex piece: the parabola with the least curvature of what is left lies below the
+ * curve, so its root is not past the first root of the polynomial, and where it has none, neither has the piece: -1. */
 static double safe_step(const struct quartic *q, double s, double right)
 {
 	double v = value(q, s), d = slope(q, s);
@@ -131,9 +131,9 @@ static double safe_step(const struct quartic *q, double s, double right)
 	return next <= right ? next : -1;
 }
 
-/* Convex piece: at most one falling root. Steps to the root of the osculating parabola converge with the third order but may
- * pass the root, or find none; whenever one leads out of the falling part, a safe step is taken from the last point above
- * zero instead. Returns -1 when there is no entry. */
+/* Convex piece: at most one falling root. Steps to the root of the osculating parabola converge with the third order
+ * but may pass the root, or find none; whenever one leads out of the falling part, a safe step is taken from the last
+ * point above zero instead. Returns -1 when there is no entry. */
 static double convex_entry(const struct quartic *q, double left, double right)
 {
 	double s = left, low = left;
@@ -167,8 +167,8 @@ static double convex_entry(const struct quartic *q, double left, double right)
 	return s;
 }
 
-/* Concave piece that starts at or above zero: it falls through zero once, if it ends below. Tangents lie above the curve,
- * so steps from the right end come down to the root from above. */
+/* Concave piece that starts at or above zero: it falls through zero once, if it ends below. Tangents lie above the
+ * curve, so steps from the right end come down to the root from above. */
 static double concave_entry(const struct quartic *q, double left, double right)
 {
 	double s = right, before = right;

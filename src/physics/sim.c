@@ -6,7 +6,7 @@
 #include "physics/collide.h"
 #include "physics/motion.h"
 
-/* ---- events that are known in advance (thesis 8.14) -------------------------------------------------------------------- */
+/* ---- events that are known in advance (thesis 8.14) ---- */
 
 /* A touched ball's motion is new: its own event and its row and column of pairs with it. */
 static void renew_motion(struct sim *sim, int i)
@@ -43,7 +43,7 @@ static void renew(struct sim *sim, uint32_t balls)
 	}
 }
 
-/* ---- public ------------------------------------------------------------------------------------------------------------ */
+/* ---- public ---- */
 
 void sim_init(struct sim *sim, const struct table *table, const struct model *model, const struct ball *ball, int count)
 {
@@ -79,8 +79,8 @@ static void advance(struct sim *sim, int i)
 	sim->ball_time[i] = sim->time;
 }
 
-/* Offsets are measured across the cue. side > 0 (left of the line of aim) turns the ball clockwise seen from above, spin
- * z < 0; follow > 0 turns it forward. Instantaneous point impact: spin = 5 v / (2 r) times the offset (Leckie and
+/* Offsets are measured across the cue. side > 0 (left of the line of aim) turns the ball clockwise seen from above,
+ * spin z < 0; follow > 0 turns it forward. Instantaneous point impact: spin = 5 v / (2 r) times the offset (Leckie and
  * Greenspan 2006), v the speed along the cue. */
 void sim_strike(struct sim *sim, int ball, const struct shot *shot)
 {

@@ -12,25 +12,26 @@
 
 /* A cue strike. Defaults to a level centre hit when only angle and speed are set. */
 struct shot {
-	double angle;		/* rad, direction of the cue, counter-clockwise from +x */
-	double speed;		/* m/s of the ball after the strike, 0 < speed <= 20 */
-	double side;		/* contact point, share of the radius, + = left of the line of aim: spin z < 0 */
-	double follow;		/* contact point, share of the radius, + = above the middle */
-	double elevation;	/* rad, cue raised by, 0 <= elevation < pi/2 */
+	double angle;	  /* rad, direction of the cue, counter-clockwise from +x */
+	double speed;	  /* m/s of the ball after the strike, 0 < speed <= 20 */
+	double side;	  /* contact point, share of the radius, + = left of the line of aim: spin z < 0 */
+	double follow;	  /* contact point, share of the radius, + = above the middle */
+	double elevation; /* rad, cue raised by, 0 <= elevation < pi/2 */
 };
 
 enum sim_end { SIM_AT_REST, SIM_TIME_LIMIT, SIM_EVENT_LIMIT };
 
 struct sim_limits {
-	double max_time;	/* s; INFINITY for none */
-	int max_events;		/* > 0 */
+	double max_time; /* s; INFINITY for none */
+	int max_events;	 /* > 0 */
 };
 
 #include "physics/sim_state.h"
 
 /* Balls are copied. Precondition (asserted): table_finish() done, table_check_balls() accepts the balls, count in
  * 1..BALL_MAX. The table is borrowed until the last use of sim. Balls may already move. */
-void sim_init(struct sim *sim, const struct table *table, const struct model *model, const struct ball *ball, int count);
+void sim_init(struct sim *sim, const struct table *table, const struct model *model, const struct ball *ball,
+	      int count);
 
 /* Strikes a ball now. Asserts a finite shot in range and a ball that is on the table. */
 void sim_strike(struct sim *sim, int ball, const struct shot *shot);

@@ -14,20 +14,20 @@
 enum { GROUP_MAX = 48 };
 
 struct sim {
-	const struct table *table;	/* borrowed */
+	const struct table *table; /* borrowed */
 	struct model model;
-	double time;			/* s */
+	double time; /* s */
 	int ball_count;
 	int event_count;
 	struct ball ball[BALL_MAX];	/* at its own last event */
 	double ball_time[BALL_MAX];	/* s, when that was */
-	struct motion motion[BALL_MAX];	/* of the phase that began then */
+	struct motion motion[BALL_MAX]; /* of the phase that began then */
 	struct queue queue;
-	struct event pending[GROUP_MAX];	/* already resolved, still to be reported */
+	struct event pending[GROUP_MAX]; /* already resolved, still to be reported */
 	int pending_count, pending_next;
-	double instant;			/* s, of the last contact that advanced time */
-	int instant_contacts;		/* contacts since then */
-	struct solve_count solved;	/* since sim_init() */
+	double instant;		   /* s, of the last contact that advanced time */
+	int instant_contacts;	   /* contacts since then */
+	struct solve_count solved; /* since sim_init() */
 };
 
 #endif

@@ -73,7 +73,8 @@ static int check_material(const struct material *m, char *err, size_t err_size)
 	return 0;
 }
 
-/* A point that balls may come from: the bed's centre, or for a jaw its pocket (a jaw of a long rail has the bed's centre behind it). */
+/* A point that balls may come from: the bed's centre, or for a jaw its pocket (a jaw of a long rail has the bed's
+ * centre behind it). */
 static vec2 playing_side(const struct table *t, const struct cushion *c)
 {
 	vec2 middle = vec2_scale(vec2_add(c->a, c->b), 0.5), nearest = {0, 0};
@@ -223,8 +224,8 @@ static bool on_bed(const struct table *table, vec2 pos)
 	return fabs(pos.x) <= table->length / 2 && fabs(pos.y) <= table->width / 2;
 }
 
-int table_check_balls(const struct table *table, const struct ball *ball, int count, int *first, int *second,
-		      char *err, size_t err_size)
+int table_check_balls(const struct table *table, const struct ball *ball, int count, int *first, int *second, char *err,
+		      size_t err_size)
 {
 	*first = *second = -1;
 	for (int i = 0; i < count; i++) {

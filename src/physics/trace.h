@@ -12,11 +12,11 @@ struct trace_entry {
 };
 
 struct trace {
-	const struct table *table;	/* borrowed; set by sim_run() */
-	struct trace_entry *entry;	/* borrowed from the caller, capacity entries */
+	const struct table *table; /* borrowed; set by sim_run() */
+	struct trace_entry *entry; /* borrowed from the caller, capacity entries */
 	int capacity, count;
-	bool overflow;			/* more events happened than fit; the first capacity are kept */
-	struct ball start[BALL_MAX];	/* states at time 0, after the strike */
+	bool overflow;		     /* more events happened than fit; the first capacity are kept */
+	struct ball start[BALL_MAX]; /* states at time 0, after the strike */
 	int ball_count;
 };
 
@@ -31,8 +31,8 @@ double trace_end(const struct trace *trace);
 
 /* Keyframe windows of thesis 4.6.5: for one ball, pairs of states between which it moves by one closed form. */
 struct keyframe_window {
-	double begin, end;	/* s */
-	struct ball from, to;	/* states just after begin and just before end */
+	double begin, end;    /* s */
+	struct ball from, to; /* states just after begin and just before end */
 };
 /* Fills at most capacity windows of that ball in order of time, returns how many there are in all. */
 int trace_windows(const struct trace *trace, int ball, struct keyframe_window *window, int capacity);
