@@ -109,7 +109,10 @@ static _Noreturn void become(const char *program, const char *const *arguments)
 	char *argv[ARGUMENT_MAX + 2] = {(char *)program};
 	ssize_t n = readlink("/proc/self/exe", self, sizeof self - 1);
 	self[n > 0 ? n : 0] = '\0';
-	snprintf(path, sizeof path, "%s/../%s", dirname(self), program);
+	if (program[0] == '/')
+		snprintf(path, sizeof path, "%s", program);
+	else
+		snprintf(path, sizeof path, "%s/../%s", dirname(self), program);
 	for (int i = 0; i < ARGUMENT_MAX && arguments[i]; i++)
 		argv[i + 1] = (char *)arguments[i];
 	redirect(STDOUT_FILENO);

@@ -25,7 +25,7 @@ struct raw_message {
 };
 extern const struct bus_type bus_raw;
 
-/* A program of the build folder with its arguments (the last NULL). What it says goes to files that fixture_said() reads. */
+/* A program of the build folder (or with a full path) with its arguments (the last NULL). What it says goes to files that fixture_said() reads. */
 pid_t fixture_start(const char *program, const char *const *arguments);
 /* Waits for its end. Exit status, 128 + signal, or -1 after that many seconds. */
 int fixture_end(pid_t pid, double seconds);
