@@ -90,12 +90,19 @@ START_TEST(markers_are_seen_where_they_lie)
 	table_camera_render(camera, NULL, 0, 1, &frame[0]);
 	ck_assert_int_eq(marker_finder_create(&finder, 4, 3, err, sizeof(err)), 0);
 	ck_assert_int_eq(marker_find(finder, &frame[0], view, MARKER_MAX), 4);
-	for (int i = 0; i < 4; i++)
+	for (int i = 0; i < 4; i++) {
+		/* white paper outshines the black square's rim, as on photographs: it looks smaller, but lies where it
+		 * lies */
+		vec2 seen = {0, 0}, truth = {0, 0};
 		for (int k = 0; k < 4; k++) {
 			vec2 px, at = vec2_madd(config.markers.marker[view[i].id].centre, 0.05, corner[k]);
 			camera_project(table_camera_truth(camera), at, 0.0381, &px);
-			ck_assert_double_le(vec2_dist(px, (vec2){view[i].x[k], view[i].y[k]}), 0.35);
+			ck_assert_double_le(vec2_dist(px, (vec2){view[i].x[k], view[i].y[k]}), 1);
+			seen = vec2_madd(seen, 0.25, (vec2){view[i].x[k], view[i].y[k]});
+			truth = vec2_madd(truth, 0.25, px);
 		}
+		ck_assert_double_le(vec2_dist(seen, truth), 0.25);
+	}
 	struct camera found = {.in = config.camera};
 	struct pose_fit fit;
 	double eye[3], truth[3];
@@ -158,6 +165,7 @@ START_TEST(balls_have_the_outline_of_a_sphere)
 	struct random random = random_begin("balls_have_the_outline_of_a_sphere");
 	fill_config();
 	struct table_camera *camera = begin();
+	double least = INFINITY, most = -INFINITY;
 	for (int i = 0; i < 40; i++) {
 		vec2 pos = {random_in(&random, -0.9, 0.9), random_in(&random, -0.44, 0.44)}, rim[RIM], shift = {0, 0};
 		double grown = 0;
@@ -172,15 +180,17 @@ START_TEST(balls_have_the_outline_of_a_sphere)
 			vec2 across = vec2_sub(rim[k], rim[(k + RIM / 2) % RIM]);
 			out = vec2_dot(out, across) < 0 ? vec2_scale(out, -1) : out;
 			double offset = edge_offset(rim[k], out);
-			ck_assert_double_lt(fabs(offset), 0.6);
+			ck_assert_double_lt(fabs(offset), 1);
 			shift = vec2_madd(shift, 2 * offset / RIM, out);
 			grown += offset / RIM;
 		}
 		ck_assert_double_le(vec2_norm(shift), 0.1);
-		/* a shaded sphere is darker towards its rim, which draws the half level inside: equally much everywhere
-		 */
-		ck_assert_double_eq_tol(grown, -0.33, 0.05);
+		least = fmin(least, grown);
+		most = fmax(most, grown);
 	}
+	/* a ball mirrors the cloth towards its rim, which draws the half level inside: equally much everywhere */
+	ck_assert(least > -0.7 && most < 0);
+	ck_assert_double_lt(most - least, 0.1);
 	table_camera_destroy(camera);
 }
 END_TEST
@@ -285,8 +295,9 @@ START_TEST(exposure_scales_and_clips)
 	camera = begin();
 	table_camera_render(camera, NULL, 0, 0, &frame[1]);
 	table_camera_destroy(camera);
-	ck_assert_double_eq_tol(grey(&frame[1], 480, 270) / (double)grey(&frame[0], 480, 270), 0.5, 0.02);
-	config.virtual_table.exposure = 10;
+	/* half the light: grey levels go with its 2.2nd root */
+	ck_assert_double_eq_tol(grey(&frame[1], 480, 270) / (double)grey(&frame[0], 480, 270), pow(0.5, 1 / 2.2), 0.02);
+	config.virtual_table.exposure = 20;
 	camera = begin();
 	table_camera_render(camera, NULL, 0, 0, &frame[1]);
 	table_camera_destroy(camera);

@@ -11,11 +11,12 @@
 
 enum { SAMPLES = 8 }; /* across a pixel on edges of the still scene */
 static const double PI = 3.14159265358979323846;
-static const float VIGNETTE = 0.12f; /* light lost in the picture's corners */
+static const float VIGNETTE = 0.25f; /* light lost in the picture's corners */
 static const double FAR = 1000;	     /* m: rays that miss the plane of the bed */
 /* Lamps, as shares of the table's length: projector and lamp of the thesis' room throw shadows to +y and to the left.
  */
 static const double PROJECTOR_AT[3] = {-0.05, -0.65, 1.0}, LAMP_AT[3] = {0.16, 0.06, 1.25};
+static const float GAMMA = 2.2f; /* of the sRGB curve, about */
 /* The projector's white on green cloth, by colour. */
 static const float PROJECTOR_WHITE[3] = {0.75f, 1.0f, 1.1f};
 
@@ -55,6 +56,12 @@ static vec2 spot_of(const struct table_camera *camera, vec2 at, double height)
 		return (vec2){-1, -1};
 	/* Cairo counts from a pixel's corner, samples are taken between its middles */
 	return (vec2){(h[0] * p.x + h[1] * p.y + h[2]) / w - 0.5, (h[3] * p.x + h[4] * p.y + h[5]) / w - 0.5};
+}
+
+float table_camera_linear(float grey)
+{
+	float x = grey / 255;
+	return x <= 0.04045f ? x / 12.92f : powf((x + 0.055f) / 1.055f, 2.4f);
 }
 
 float table_camera_gain(const struct table_camera *camera, int x, int y)
@@ -110,23 +117,25 @@ static bool is_plain(const struct table_scene *scene, const struct footprint *f,
 	return true;
 }
 
-static void mean_colour(const struct table_scene *scene, const struct footprint *f, float rgb[3])
+static void add_light(const struct table_scene *scene, vec2 p, enum surface surface, float weight, float light[3])
 {
-	float sum[3] = {0, 0, 0};
-	for (int k = 0; k < SAMPLES * SAMPLES; k++) {
-		vec2 p = within(f, (k % SAMPLES + 0.5) / SAMPLES - 0.5, (k / SAMPLES + 0.5) / SAMPLES - 0.5);
-		float one[3];
-		table_scene_colour(scene, p, table_scene_surface(scene, p), one);
-		for (int c = 0; c < 3; c++)
-			sum[c] += one[c];
-	}
+	float rgb[3];
+	table_scene_colour(scene, p, surface, rgb);
 	for (int c = 0; c < 3; c++)
-		rgb[c] = sum[c] / (SAMPLES * SAMPLES);
+		light[c] += weight * table_camera_linear(rgb[c]);
 }
 
-static uint16_t to_level(float grey)
+static void mean_light(const struct table_scene *scene, const struct footprint *f, float light[3])
 {
-	float level = grey * LEVEL + 0.5f;
+	for (int k = 0; k < SAMPLES * SAMPLES; k++) {
+		vec2 p = within(f, (k % SAMPLES + 0.5) / SAMPLES - 0.5, (k / SAMPLES + 0.5) / SAMPLES - 0.5);
+		add_light(scene, p, table_scene_surface(scene, p), 1.0f / (SAMPLES * SAMPLES), light);
+	}
+}
+
+static uint16_t to_level(float light)
+{
+	float level = light * LEVEL + 0.5f;
 	return level >= LEVEL_MAX ? LEVEL_MAX : level <= 0 ? 0 : (uint16_t)level;
 }
 
@@ -135,14 +144,14 @@ static void paint_pixel(struct table_camera *camera, int x, int y)
 	int i = y * camera->camera.in.width + x;
 	struct footprint f = footprint_of(camera, x, y);
 	enum surface surface = table_scene_surface(&camera->scene, f.at);
-	float rgb[3], gain = table_camera_gain(camera, x, y);
+	float light[3] = {0, 0, 0}, gain = table_camera_gain(camera, x, y);
 	vec2 at;
 	if (is_plain(&camera->scene, &f, surface))
-		table_scene_colour(&camera->scene, f.at, surface, rgb);
+		add_light(&camera->scene, f.at, surface, 1, light);
 	else
-		mean_colour(&camera->scene, &f, rgb);
+		mean_light(&camera->scene, &f, light);
 	for (int c = 0; c < 3; c++)
-		camera->base[3 * i + 2 - c] = to_level(gain * rgb[c]);
+		camera->base[3 * i + 2 - c] = to_level(gain * light[c]);
 	double height = table_scene_meet(&camera->scene, f.at, surface, &at);
 	vec2 spot = spot_of(camera, at, height);
 	camera->surface[i] = (uint8_t)surface;
@@ -189,7 +198,7 @@ void table_camera_picture_at(const struct table_camera *camera, vec2 at, double 
 			rgb[c] *= (float)camera->def.projector_light;
 }
 
-/* Full white makes the table brighter by projector_light of what the room's light makes it. */
+/* Full white makes the table's grey levels larger by projector_light of what the room's light makes them. */
 static void light_table(struct table_camera *camera)
 {
 	size_t count = (size_t)camera->camera.in.width * (size_t)camera->camera.in.height;
@@ -203,7 +212,7 @@ static void light_table(struct table_camera *camera)
 			continue;
 		for (size_t c = 0; c < 3; c++)
 			camera->lit[3 * i + 2 - c] =
-				to_level((float)camera->base[3 * i + 2 - c] / LEVEL * (1 + share * rgb[c]));
+				to_level((float)camera->base[3 * i + 2 - c] / LEVEL * powf(1 + share * rgb[c], GAMMA));
 	}
 }
 
@@ -232,7 +241,7 @@ static uint64_t mix(uint64_t z)
 /* Box and Muller. */
 static void fill_noise(struct table_camera *camera)
 {
-	double sigma = camera->def.noise * LEVEL;
+	double sigma = camera->def.noise * GREY;
 	for (uint64_t i = 0; i < NOISE_COUNT; i += 2) {
 		double u = ((double)(mix(camera->def.seed ^ i) >> 11) + 1) * 0x1p-53;
 		double v = (double)(mix(camera->def.seed ^ (i + 1)) >> 11) * 0x1p-53, r = sigma * sqrt(-2 * log(u));
@@ -249,18 +258,30 @@ static void blur_down(const uint16_t *above, const uint16_t *row, const uint16_t
 		column[i] = (uint32_t)above[i] + 2u * row[i] + below[i];
 }
 
-static uint8_t to_grey(int level)
+static void fill_grey(struct table_camera *camera)
 {
-	int grey = (level + LEVEL / 2) / LEVEL;
-	return level < 0 ? 0 : grey > 255 ? 255 : (uint8_t)grey;
+	for (int i = 0; i <= LEVEL; i++) {
+		float x = (float)i / LEVEL;
+		float y = x <= 0.0031308f ? 12.92f * x : 1.055f * powf(x, 1 / 2.4f) - 0.055f;
+		camera->grey[i] = (uint16_t)(255 * GREY * y + 0.5f);
+	}
 }
 
-static void expose_row(const uint32_t *column, int width, const int16_t *noise, unsigned at, uint8_t *out)
+static uint8_t to_byte(int grey)
 {
-	for (int i = 0; i < 3 * width; i++) {
-		uint32_t left = column[i < 3 ? i : i - 3], right = column[i >= 3 * width - 3 ? i : i + 3];
-		int level = (int)((left + 2 * column[i] + right) / 16) + noise[(at + (unsigned)i) % NOISE_COUNT];
-		out[i] = to_grey(level);
+	int rounded = (grey + GREY / 2) / GREY;
+	return grey < 0 ? 0 : rounded > 255 ? 255 : (uint8_t)rounded;
+}
+
+static void expose_row(const struct table_camera *camera, unsigned at, uint8_t *out)
+{
+	const uint32_t *column = camera->column;
+	int count = 3 * camera->camera.in.width;
+	for (int i = 0; i < count; i++) {
+		uint32_t left = column[i < 3 ? i : i - 3], right = column[i >= count - 3 ? i : i + 3];
+		uint32_t level = (left + 2 * column[i] + right) / 16;
+		int grey = camera->grey[level < LEVEL ? level : LEVEL];
+		out[i] = to_byte(grey + camera->noise[(at + (unsigned)i) % NOISE_COUNT]);
 	}
 }
 
@@ -268,12 +289,11 @@ static void expose(const struct table_camera *camera, uint64_t frame, struct ima
 {
 	int width = camera->camera.in.width, height = camera->camera.in.height;
 	ptrdiff_t step = 3 * (ptrdiff_t)width;
-	uint32_t *column = camera->column;
 	for (int y = 0; y < height; y++) {
 		const uint16_t *row = camera->work + y * step;
-		blur_down(y > 0 ? row - step : row, row, y < height - 1 ? row + step : row, 3 * width, column);
+		blur_down(y > 0 ? row - step : row, row, y < height - 1 ? row + step : row, 3 * width, camera->column);
 		unsigned at = (unsigned)mix(camera->def.seed ^ mix(frame * 8192 + (uint64_t)y)) % NOISE_COUNT;
-		expose_row(column, width, camera->noise, at, out->data + y * out->stride);
+		expose_row(camera, at, out->data + y * out->stride);
 	}
 }
 
@@ -321,10 +341,11 @@ static bool take_memory(struct table_camera *camera)
 	camera->lit = malloc(3 * count * sizeof(*camera->lit));
 	camera->work = malloc(3 * count * sizeof(*camera->work));
 	camera->column = malloc(3 * (size_t)camera->camera.in.width * sizeof(*camera->column));
+	camera->grey = malloc((LEVEL + 1) * sizeof(*camera->grey));
 	camera->noise = malloc(NOISE_COUNT * sizeof(*camera->noise));
 	picture->pixels = malloc((size_t)picture->width * (size_t)picture->height * 4);
 	return camera->cloth && camera->spot && camera->surface && camera->base && camera->lit && camera->work &&
-	       camera->column && camera->noise && picture->pixels;
+	       camera->column && camera->grey && camera->noise && picture->pixels;
 }
 
 static void set_up(struct table_camera *camera, const struct config *config)
@@ -363,6 +384,7 @@ int table_camera_create(struct table_camera **out, const struct config *config, 
 	map_cloth(camera);
 	for (int i = 0; i < camera->camera.in.width * camera->camera.in.height; i++)
 		paint_pixel(camera, i % camera->camera.in.width, i / camera->camera.in.width);
+	fill_grey(camera);
 	fill_noise(camera);
 	light_table(camera);
 	*out = camera;
@@ -384,6 +406,7 @@ void table_camera_destroy(struct table_camera *camera)
 	free(camera->lit);
 	free(camera->work);
 	free(camera->column);
+	free(camera->grey);
 	free(camera->noise);
 	free(camera->picture.pixels);
 	free(camera);

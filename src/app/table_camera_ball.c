@@ -1,6 +1,5 @@
 #include <assert.h>
 #include <math.h>
-#include <string.h>
 
 #include "app/table_camera_state.h"
 
@@ -15,9 +14,9 @@ struct vec3 {
 struct sphere {
 	struct vec3 centre;
 	double radius;
-	float albedo[3]; /* red, green, blue in grey levels under full light */
-	float room[3];	 /* the room's light at its place */
-	float gain;
+	float albedo[3]; /* red, green, blue: share of LEVEL under full light */
+	float cloth[3];	 /* light of the cloth around it, shares of LEVEL */
+	float room[3];	 /* the room's light at its place, linear */
 };
 
 struct box {
@@ -25,14 +24,15 @@ struct box {
 };
 
 /* Light on a ball: from everywhere, from the lamp, from the projector's black. */
-static const float AMBIENT = 0.52f, LAMP = 0.40f, GLOW = 0.16f;
+static const float AMBIENT = 0.42f, LAMP = 0.42f, GLOW = 0.22f;
 /* What of the cloth's light each source gives, by colour: it is missing in a ball's shadow. */
-static const float LAMP_SHARE[3] = {0.28f, 0.26f, 0.22f}, GLOW_SHARE[3] = {0.12f, 0.18f, 0.26f};
-static const double LAMP_SOFT = 0.10, GLOW_SOFT = 0.03; /* half width of the penumbra, in radii */
-static const float CONTACT = 0.40f;			/* light lost right at the foot */
-static const double SHADOW_REACH = 3.2;			/* radii */
-static const float SHINE_LAMP = 210, SHINE_GLOW = 150;	/* grey levels */
+static const float LAMP_SHARE[3] = {0.50f, 0.48f, 0.42f}, GLOW_SHARE[3] = {0.24f, 0.34f, 0.46f};
+static const double LAMP_SOFT = 0.10, GLOW_SOFT = 0.03;	   /* half width of the penumbra, in radii */
+static const float CONTACT = 0.50f;			   /* light lost right at the foot */
+static const double SHADOW_REACH = 3.2;			   /* radii */
+static const float SHINE_LAMP = 0.75f, SHINE_GLOW = 0.40f; /* shares of LEVEL */
 static const float SHINE_POWER = 420;
+static const float MIRROR = 0.04f; /* of phenolic resin, seen from straight above */
 
 /* ---- vectors ---- */
 
@@ -125,11 +125,21 @@ static void draw_shadow(struct table_camera *camera, const struct sphere *sphere
 
 /* ---- balls ---- */
 
+/* Grey levels under full light; above 255 the sensor clips, as it does on the thesis' photographs. */
 static const float ALBEDO[COLOUR_COUNT][3] = {
-	[COLOUR_WHITE] = {255, 248, 226}, [COLOUR_RED] = {238, 8, 26},	  [COLOUR_YELLOW] = {255, 222, 26},
+	[COLOUR_WHITE] = {300, 285, 255}, [COLOUR_RED] = {245, 8, 26},	  [COLOUR_YELLOW] = {300, 240, 26},
 	[COLOUR_GREEN] = {14, 158, 166},  [COLOUR_BROWN] = {214, 64, 42}, [COLOUR_BLUE] = {8, 148, 232},
-	[COLOUR_PINK] = {255, 128, 152},  [COLOUR_BLACK] = {50, 32, 44},  [COLOUR_UNKNOWN] = {160, 160, 160},
+	[COLOUR_PINK] = {300, 145, 168},  [COLOUR_BLACK] = {46, 28, 40},  [COLOUR_UNKNOWN] = {160, 160, 160},
 };
+
+/* How much of the cloth a polished ball mirrors (Schlick): nothing in the middle, where it shows the dark room above,
+ * nearly all at the rim. This is why dark balls look smaller than they are. */
+static float mirror(struct vec3 normal, struct vec3 to_eye)
+{
+	double cosine = fmax(0, fmin(1, dot(normal, to_eye))), up = 2 * cosine * normal.z - to_eye.z;
+	float k = 1 - (float)cosine, below = (float)fmax(0, fmin(1, 0.5 - 2 * up));
+	return below * (MIRROR + (1 - MIRROR) * k * k * k * k * k);
+}
 
 /* Blinn and Phong: how much of a lamp the surface mirrors into the eye. */
 static float shine(struct vec3 normal, struct vec3 to_lamp, struct vec3 to_eye)
@@ -139,17 +149,20 @@ static float shine(struct vec3 normal, struct vec3 to_lamp, struct vec3 to_eye)
 }
 
 static void shade_ball(const struct table_camera *camera, const struct sphere *sphere, struct vec3 at,
-		       struct vec3 normal, struct vec3 eye, float rgb[3])
+		       struct vec3 normal, struct vec3 eye, float light[3])
 {
 	struct vec3 to_lamp = unit(sub(from_array(camera->lamp_at), at)),
 		    to_glow = unit(sub(from_array(camera->projector_at), at));
 	struct vec3 to_eye = unit(sub(eye, at));
 	float lamp = (float)fmax(0, dot(normal, to_lamp)), glow = (float)fmax(0, dot(normal, to_glow)), picture[3];
-	float mirrored = SHINE_LAMP * shine(normal, to_lamp, to_eye) + SHINE_GLOW * shine(normal, to_glow, to_eye);
+	float around = mirror(normal, to_eye),
+	      mirrored = SHINE_LAMP * shine(normal, to_lamp, to_eye) + SHINE_GLOW * shine(normal, to_glow, to_eye);
 	table_camera_picture_at(camera, (vec2){at.x, at.y}, at.z, picture);
 	for (int c = 0; c < 3; c++) {
-		float light = (AMBIENT * (0.8f + 0.2f * (float)normal.z) + LAMP * lamp + GLOW * glow) * sphere->room[c];
-		rgb[c] = sphere->gain * (sphere->albedo[c] * (light + glow * picture[c]) + mirrored * sphere->room[c]);
+		float drawn = picture[c] > 0 ? powf(1 + picture[c], 2.2f) - 1 : 0;
+		float room = AMBIENT * (0.75f + 0.25f * (float)normal.z) + LAMP * lamp + GLOW * glow;
+		light[c] = (1 - around) * sphere->albedo[c] * (room * sphere->room[c] + glow * drawn) +
+			   around * sphere->cloth[c] + mirrored * sphere->room[c];
 	}
 }
 
@@ -202,16 +215,16 @@ static float coverage(const struct table_camera *camera, const struct sphere *sp
 	return (float)hits / (RIM_SAMPLES * RIM_SAMPLES);
 }
 
-static void blend(struct table_camera *camera, int i, const float rgb[3], float share)
+static void blend(struct table_camera *camera, int i, const float light[3], float gain, float share)
 {
 	for (int c = 0; c < 3; c++) {
 		uint16_t *level = &camera->work[3 * i + 2 - c];
-		float grey = (1 - share) * (float)*level + share * LEVEL * rgb[c];
-		*level = (uint16_t)fminf(LEVEL_MAX, grey);
+		float sum = (1 - share) * (float)*level + share * LEVEL * gain * light[c];
+		*level = (uint16_t)fminf(LEVEL_MAX, sum);
 	}
 }
 
-static void draw_ball(struct table_camera *camera, struct sphere *sphere, struct vec3 eye)
+static void draw_ball(struct table_camera *camera, const struct sphere *sphere, struct vec3 eye)
 {
 	struct box box = box_around(camera, sphere->centre, sphere->radius, sphere->radius);
 	struct vec3 to = sub(sphere->centre, eye);
@@ -224,12 +237,11 @@ static void draw_ball(struct table_camera *camera, struct sphere *sphere, struct
 			if (!pass_ball(sphere, to, (struct vec3){cloth.x - eye.x, cloth.y - eye.y, -eye.z}, 1 + rim,
 				       &pass))
 				continue;
-			float share = pass.distance < 1 - rim ? 1 : coverage(camera, sphere, eye, x, y), rgb[3];
+			float share = pass.distance < 1 - rim ? 1 : coverage(camera, sphere, eye, x, y), light[3];
 			if (share <= 0)
 				continue;
-			sphere->gain = table_camera_gain(camera, x, y);
-			shade_ball(camera, sphere, pass.at, pass.normal, eye, rgb);
-			blend(camera, y * camera->camera.in.width + x, rgb, share);
+			shade_ball(camera, sphere, pass.at, pass.normal, eye, light);
+			blend(camera, y * camera->camera.in.width + x, light, table_camera_gain(camera, x, y), share);
 		}
 }
 
@@ -244,8 +256,13 @@ static int sort_spheres(const struct table_camera *camera, const struct ball *ba
 			continue;
 		struct sphere sphere = {.centre = {ball[i].pos.x, ball[i].pos.y, camera->table.ball_radius},
 					.radius = camera->table.ball_radius};
-		memcpy(sphere.albedo, ALBEDO[ball[i].colour], sizeof(sphere.albedo));
 		table_scene_light(&camera->scene, ball[i].pos, sphere.room);
+		table_scene_colour(&camera->scene, ball[i].pos, SURFACE_BED, sphere.cloth);
+		for (int c = 0; c < 3; c++) {
+			sphere.albedo[c] = table_camera_linear(ALBEDO[ball[i].colour][c]);
+			sphere.cloth[c] = table_camera_linear(sphere.cloth[c]);
+			sphere.room[c] = powf(sphere.room[c], 2.2f);
+		}
 		struct vec3 to = sub(sphere.centre, eye);
 		int k = n++;
 		for (; k > 0; k--) {
