@@ -30,7 +30,7 @@ APP := text_file shot_file colour_file cmd_calibrate config config_reader config
 # programs: src/app/main_NAME.c becomes build/NAME
 PROGRAMS := billiard billiard-vision billiard-planner billiard-infinity billiard-projector billiard-table
 # tests/test_NAME.c each; tests/NAME.c shared by them
-TESTS := fsm stability plan_message controller planner_service planner_bus bus services replay \
+TESTS := fsm stability plan_message controller planner_service planner_bus bus process supervisor frame_source services replay \
 	config position cmd plot draw render player table_camera contact_real contact_recorded shot_file \
 	rules cost geometry frontier pool scheme candidate plan plan_thesis plan_hard plan_complete \
 	ball contact detect event inverse model motion queue roots sim sim_hard table trace \
