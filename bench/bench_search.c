@@ -16,7 +16,7 @@ struct job {
 	struct planner *planner;
 	struct plan_request request;
 	struct plan_result result;
-	double first, begin;	/* s until the first proposal; when the search began */
+	double first, begin; /* s until the first proposal; when the search began */
 };
 
 static double now_s(void *context)
@@ -72,7 +72,8 @@ static double time_first(struct job *job)
 	return 1000 * best;
 }
 
-/* ---- the positions --------------------------------------------------------------------------------------------------- */
+/* ---- the positions
+ * --------------------------------------------------------------------------------------------------- */
 
 static bool read_situation(const struct table *table, const char *name, struct plan_request *request)
 {
@@ -99,7 +100,8 @@ static struct plan_request after_break(const struct table *table, int variant)
 	return request;
 }
 
-/* ---- speed ----------------------------------------------------------------------------------------------------------- */
+/* ---- speed
+ * ----------------------------------------------------------------------------------------------------------- */
 
 static double measure(struct report *report, struct job *job, const char *name)
 {
@@ -167,7 +169,8 @@ static void bench_speed(struct report *report, const struct table *table)
 	report_number(report, "plan.first_ms", first, "ms");
 }
 
-/* ---- quality against time ---------------------------------------------------------------------------------------------- */
+/* ---- quality against time
+ * ---------------------------------------------------------------------------------------------- */
 
 /* ms, the best of three. */
 static double time_quick(struct job *job)

@@ -14,15 +14,16 @@
 enum { PATH_SIZE = 512, TOP = 10 };
 static const double degree = M_PI / 180;
 
-/* ---- the lists of the thesis' program ---------------------------------------------------------------------------------- */
+/* ---- the lists of the thesis' program
+ * ---------------------------------------------------------------------------------- */
 
 static bool same_shot(const struct position *position, const struct plan_shot *shot, const json_t *want)
 {
 	const json_t *potted = json_object_get(want, "potted");
 	double angle = json_number_value(json_object_get(want, "angle_deg"));
 	double speed = json_number_value(json_object_get(want, "speed_mm_s"));
-	if (fabs(remainder(shot->shot.angle / degree - angle, 360)) > 0.2 || fabs(1000 * shot->shot.speed / speed - 1) > 0.02 ||
-	    json_array_size(potted) != (size_t)shot->potted_count)
+	if (fabs(remainder(shot->shot.angle / degree - angle, 360)) > 0.2 ||
+	    fabs(1000 * shot->shot.speed / speed - 1) > 0.02 || json_array_size(potted) != (size_t)shot->potted_count)
 		return false;
 	for (int i = 0; i < shot->potted_count; i++) {
 		bool found = false;
@@ -48,8 +49,8 @@ static int rank_of(const struct position *position, const struct plan_result *re
 	return -1;
 }
 
-static void compare_list(struct report *report, struct planner *planner, const struct position *position, const char *name,
-			 const char *key, const json_t *want)
+static void compare_list(struct report *report, struct planner *planner, const struct position *position,
+			 const char *name, const char *key, const json_t *want)
 {
 	struct plan_request request = scene_request(position->ball, position->count);
 	request.target = TARGET_COLOUR;
@@ -96,14 +97,14 @@ static void eval_lists(struct report *report, const char *data)
 			printf("SKIPPED: %s\n", err);
 			continue;
 		}
-		json_object_foreach(lists, key, want)
-			compare_list(report, planner, &position, name, key, want);
+		json_object_foreach(lists, key, want) compare_list(report, planner, &position, name, key, want);
 	}
 	planner_destroy(planner);
 	json_decref(all);
 }
 
-/* ---- playing everything forward ---------------------------------------------------------------------------------------- */
+/* ---- playing everything forward
+ * ---------------------------------------------------------------------------------------- */
 
 static void eval_complete(struct report *report, const char *model, int positions)
 {
@@ -130,7 +131,8 @@ static void eval_complete(struct report *report, const char *model, int position
 			uint8_t found[BALL_MAX] = {0};
 			for (int i = 0; i < result.plan_count; i++)
 				if (result.plan[i].shot[0].target >= 0)
-					found[result.plan[i].shot[0].target] |= (uint8_t)(1u << result.plan[i].shot[0].pocket);
+					found[result.plan[i].shot[0].target] |=
+						(uint8_t)(1u << result.plan[i].shot[0].pocket);
 			for (int b = 0; b < count; b++)
 				for (int k = 0; k < table.pocket_count; k++) {
 					bool by_force = brute.pots[b] >> k & 1, by_search = found[b] >> k & 1;
@@ -138,8 +140,9 @@ static void eval_complete(struct report *report, const char *model, int position
 					proposed += p == 0 && by_search;
 					missing[p] += by_force && !by_search;
 					if (p == 0 && by_force && !by_search)
-						printf("  %s, position %d: ball %d into %s at %.3f deg, %.1f m/s\n", model, n, b,
-						       table.pocket[k].name, brute.angle[b][k] / degree, brute.speed[b][k]);
+						printf("  %s, position %d: ball %d into %s at %.3f deg, %.1f m/s\n",
+						       model, n, b, table.pocket[k].name, brute.angle[b][k] / degree,
+						       brute.speed[b][k]);
 				}
 		}
 	}
@@ -147,7 +150,10 @@ static void eval_complete(struct report *report, const char *model, int position
 	const struct {
 		const char *what;
 		int value;
-	} row[] = {{"pots_by_force", pots}, {"pots_proposed", proposed}, {"missing", missing[0]}, {"missing_thesis_profile", missing[1]}};
+	} row[] = {{"pots_by_force", pots},
+		   {"pots_proposed", proposed},
+		   {"missing", missing[0]},
+		   {"missing_thesis_profile", missing[1]}};
 	for (size_t i = 0; i < sizeof row / sizeof row[0]; i++) {
 		snprintf(label, sizeof label, "plan.complete.%s.%s", model, row[i].what);
 		report_number(report, label, row[i].value, "count");
@@ -156,7 +162,8 @@ static void eval_complete(struct report *report, const char *model, int position
 	planner_destroy(planner[1]);
 }
 
-/* ---- cushion shots that land -------------------------------------------------------------------------------------------- */
+/* ---- cushion shots that land
+ * -------------------------------------------------------------------------------------------- */
 
 static void eval_refined(struct report *report, const char *model, int positions)
 {

@@ -35,7 +35,7 @@ static int clean_pot(const struct trace *trace, int cue, int *pocket)
 			return -1;
 		ball = event->ball == ball ? event->other : event->ball;
 		if (next_contact(trace, ball, 0) != at)
-			return -1;	/* something has moved it before */
+			return -1; /* something has moved it before */
 		at++;
 	}
 	return -1;
@@ -49,15 +49,16 @@ static bool is_potted(const struct trace *trace, int ball)
 	return false;
 }
 
-void brute_force(const struct table *table, const struct model *model, const struct ball *ball, int count, const struct brute_fan *fan,
-		 double clearance, struct brute_result *result)
+void brute_force(const struct table *table, const struct model *model, const struct ball *ball, int count,
+		 const struct brute_fan *fan, double clearance, struct brute_result *result)
 {
 	static struct trace_entry entry[TRACE_MAX];
 	static struct sim sim;
 	const struct sim_limits limits = {.max_time = INFINITY, .max_events = TRACE_MAX - 1};
 	memset(result, 0, sizeof *result);
 	for (int i = 0; i < fan->angles * fan->speed_count; i++) {
-		struct shot shot = {.angle = 2 * M_PI * (i / fan->speed_count) / fan->angles, .speed = fan->speed[i % fan->speed_count]};
+		struct shot shot = {.angle = 2 * M_PI * (i / fan->speed_count) / fan->angles,
+				    .speed = fan->speed[i % fan->speed_count]};
 		struct trace trace;
 		int pocket = -1;
 		trace_init(&trace, entry, TRACE_MAX);

@@ -35,7 +35,8 @@ void scene_random(struct random *random, const struct table *table, double gap, 
 		for (int k = 0; k < i; k++)
 			is_free &= vec2_dist(pos, ball[k].pos) > 2 * table->ball_radius + gap;
 		for (int p = 0; p < table->pocket_count; p++)
-			is_free &= vec2_dist(pos, table->pocket[p].centre) > table->pocket[p].radius + table->ball_radius;
+			is_free &=
+				vec2_dist(pos, table->pocket[p].centre) > table->pocket[p].radius + table->ball_radius;
 		if (is_free) {
 			ball[i] = ball_at(colour_of(i, count), pos);
 			i++;
@@ -58,7 +59,8 @@ void scene_after_break(const struct table *table, int variant, struct ball ball[
 		ball[i] = sim_ball(&sim, i);
 }
 
-struct planner *scene_planner(const struct table *table, const char *model, const struct cost_profile *profile, int workers)
+struct planner *scene_planner(const struct table *table, const char *model, const struct cost_profile *profile,
+			      int workers)
 {
 	struct planner_def def = planner_def_default();
 	struct planner *planner = NULL;

@@ -50,7 +50,8 @@ START_TEST(four_mirrors)
 }
 END_TEST
 
-/* Angle of incidence equals angle of reflection; the way is as long as the straight line to the image; cushions are met in front. */
+/* Angle of incidence equals angle of reflection; the way is as long as the straight line to the image; cushions are met
+ * in front. */
 START_TEST(ways_are_reflections)
 {
 	struct random random = random_begin("ways_are_reflections");
@@ -75,7 +76,8 @@ START_TEST(ways_are_reflections)
 			for (int i = 0; i < way.rails; i++) {
 				vec2 in = vec2_unit(vec2_sub(way.point[i + 1], way.point[i]));
 				vec2 out = vec2_unit(vec2_sub(way.point[i + 2], way.point[i + 1]));
-				ck_assert_double_eq_tol(vec2_dot(in, way.normal[i]), -vec2_dot(out, way.normal[i]), 1e-9);
+				ck_assert_double_eq_tol(vec2_dot(in, way.normal[i]), -vec2_dot(out, way.normal[i]),
+							1e-9);
 				ck_assert(vec2_dot(out, way.normal[i]) > 0);
 			}
 			ck_assert(vec2_dist(way.point[way.rails + 1], to) < 1e-12);

@@ -206,7 +206,7 @@ END_TEST
 static void *cancel_soon(void *planner)
 {
 	struct timespec wait = {0, 20 * 1000 * 1000};
-	for (int i = 0; i < 20; i++) {	/* the first may come before the search begins */
+	for (int i = 0; i < 20; i++) { /* the first may come before the search begins */
 		nanosleep(&wait, NULL);
 		planner_cancel(planner);
 	}
@@ -309,7 +309,7 @@ START_TEST(little_memory)
 	def.memory = 1;
 	ck_assert_int_eq(planner_create(&planner, &def), -EINVAL);
 	ck_assert_ptr_null(planner);
-	while (planner_create(&planner, &def) != 0)	/* the least that is enough, to 1 % */
+	while (planner_create(&planner, &def) != 0) /* the least that is enough, to 1 % */
 		def.memory += def.memory / 100 + 1000;
 	ck_assert_uint_lt(def.memory, 32u << 20);
 	scene_after_break(&table, 3, ball);

@@ -40,8 +40,9 @@ START_TEST(nothing_is_missed)
 			for (int p = 0; p < table.pocket_count; p++) {
 				bool by_force = brute.pots[b] >> p & 1;
 				pots += by_force;
-				ck_assert_msg(!by_force || (found[b] >> p & 1), "position %d: ball %d into %s at %.3f deg", n, b,
-					      table.pocket[p].name, brute.angle[b][p] * 180 / M_PI);
+				ck_assert_msg(!by_force || (found[b] >> p & 1),
+					      "position %d: ball %d into %s at %.3f deg", n, b, table.pocket[p].name,
+					      brute.angle[b][p] * 180 / M_PI);
 			}
 	}
 	ck_assert_int_gt(pots, 100);

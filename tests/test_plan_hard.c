@@ -58,7 +58,8 @@ static void search_with(struct hard *hard, const char *model)
 		for (int s = 0; s < hard->result.plan[i].shot_count; s++) {
 			struct trace trace;
 			trace_init(&trace, entry, TRACE_MAX);
-			ck_assert(plan_shot_replay(&hard->table, &m, &hard->result.plan[i].shot[s], hard->count, &trace));
+			ck_assert(
+				plan_shot_replay(&hard->table, &m, &hard->result.plan[i].shot[s], hard->count, &trace));
 		}
 }
 
@@ -127,7 +128,7 @@ START_TEST(one_ball_left)
 	add(&h, COLOUR_WHITE, -0.2, 0.1);
 	add(&h, COLOUR_BLACK, 0.5, 0.2);
 	set_rules(&h);
-	h.request.depth = 3;	/* deeper than there are balls */
+	h.request.depth = 3; /* deeper than there are balls */
 	search_with(&h, "thesis");
 	ck_assert_int_eq(best(&h)->target, 1);
 	ck_assert_int_eq(h.result.plan[0].shot_count, 1);
@@ -331,7 +332,8 @@ START_TEST(mirrored_tables)
 }
 END_TEST
 
-/* ---- requests that are refused --------------------------------------------------------------------------------------- */
+/* ---- requests that are refused
+ * --------------------------------------------------------------------------------------- */
 
 static void refused(const struct hard *hard, const char *word)
 {

@@ -44,7 +44,8 @@ static bool shot_same(const struct position *position, const struct plan_shot *s
 {
 	double angle = json_number_value(json_object_get(want, "angle_deg"));
 	double speed = json_number_value(json_object_get(want, "speed_mm_s"));
-	return fabs(remainder(shot->shot.angle / degree - angle, 360)) <= 0.2 && fabs(1000 * shot->shot.speed / speed - 1) <= 0.02 &&
+	return fabs(remainder(shot->shot.angle / degree - angle, 360)) <= 0.2 &&
+	       fabs(1000 * shot->shot.speed / speed - 1) <= 0.02 &&
 	       potted_same(position, shot, json_object_get(want, "potted"));
 }
 
@@ -91,7 +92,8 @@ START_TEST(lists_of_the_thesis)
 		int rank = rank_of(&position, &result, json_array_get(want, i));
 		found += rank >= 0;
 		if ((int)i < l->in_order) {
-			ck_assert_msg(rank > last, "%s %s: number %zu is at %d after %d", l->situation, l->key, i, rank, last);
+			ck_assert_msg(rank > last, "%s %s: number %zu is at %d after %d", l->situation, l->key, i, rank,
+				      last);
 			last = rank;
 		}
 	}

@@ -94,7 +94,7 @@ END_TEST
 static const struct shot_case {
 	const char *name;
 	enum rules_on on;
-	int nominated, first, potted[3];	/* -1 none */
+	int nominated, first, potted[3]; /* -1 none */
 	int points, foul;
 	enum rules_on next;
 } shot_case[] = {
@@ -126,7 +126,7 @@ START_TEST(shots_are_judged)
 	const struct shot_case *c = &shot_case[_i];
 	struct game g;
 	usual(&g);
-	event(&g, EVENT_CUSHION, CUE, 0);	/* cushion first is legal */
+	event(&g, EVENT_CUSHION, CUE, 0); /* cushion first is legal */
 	if (c->first >= 0)
 		event(&g, EVENT_BALL_BALL, CUE, c->first);
 	for (int i = 0; i < 3 && c->potted[i] >= 0; i++)
@@ -243,14 +243,16 @@ START_TEST(all_spots_occupied)
 	add(&g, COLOUR_RED, d * 1.2, dy);
 	ck_assert(rules_respot(&g.table, g.ball, g.count, COLOUR_BLUE, &pos));
 	ck_assert_double_eq_tol(pos.x, d * 1.2 + sqrt(d * d - dy * dy), 2e-9);
-	/* black: its spot is nearer to the cushion than a ball is wide, so the first free place of the grid: beside it */
+	/* black: its spot is nearer to the cushion than a ball is wide, so the first free place of the grid: beside it
+	 */
 	ck_assert(rules_respot(&g.table, g.ball, g.count, COLOUR_BLACK, &pos));
 	ck_assert_double_eq_tol(pos.x, g.table.spot[COLOUR_BLACK].x, 1e-12);
 	ck_assert_double_eq_tol(pos.y, d, 1e-12);
 }
 END_TEST
 
-/* Random crowds: a respot never overlaps or leaves the bed, and no place on the line towards the top cushion is nearer. */
+/* Random crowds: a respot never overlaps or leaves the bed, and no place on the line towards the top cushion is nearer.
+ */
 START_TEST(respots_are_free_and_nearest)
 {
 	struct random random = random_begin("respots_are_free_and_nearest");

@@ -11,13 +11,13 @@
 #include "app/position.h"
 
 enum { TRACE_MAX = 1024, PATH_SIZE = 512 };
-static const double mm = 1000;	/* in a metre */
+static const double mm = 1000; /* in a metre */
 static const double degree = 180 / M_PI;
 
 struct options {
 	const char *config, *model, *profile, *target, *plot, *position;
-	int depth, rails, balls, speeds, plans, tolerances, workers;	/* -1: as configured */
-	double budget_ms;	/* negative: as configured */
+	int depth, rails, balls, speeds, plans, tolerances, workers; /* -1: as configured */
+	double budget_ms;					     /* negative: as configured */
 	double budget_nodes;
 	bool in_hand, json;
 };
@@ -35,8 +35,10 @@ struct run {
 
 static void help(void)
 {
-	puts("usage: billiard plan [-c CONF] [--depth N] [--rails N] [--balls N] [--target COLOUR|ID|any|rules] [--speeds N]\n"
-	     "                     [--workers N] [--budget-ms N] [--budget-nodes N] [--plans N] [--tolerances N] [--in-hand]\n"
+	puts("usage: billiard plan [-c CONF] [--depth N] [--rails N] [--balls N] [--target COLOUR|ID|any|rules] "
+	     "[--speeds N]\n"
+	     "                     [--workers N] [--budget-ms N] [--budget-nodes N] [--plans N] [--tolerances N] "
+	     "[--in-hand]\n"
 	     "                     [--model NAME] [--profile NAME] [--json] [--plot FILE.svg|.png] POSITION.txt\n\n"
 	     "  -c, --config CONF  table, default $BILLIARD_CONF or the installed one\n"
 	     "  --depth N          shots ahead, 1..4\n"
@@ -57,10 +59,26 @@ static void help(void)
 	     "POSITION.txt holds \"ID, TYPE, x, y\" lines in mm (- is standard input).");
 }
 
-/* ---- command line --------------------------------------------------------------------------------------------------- */
+/* ---- command line ---------------------------------------------------------------------------------------------------
+ */
 
-enum { OPT_DEPTH = 256, OPT_RAILS, OPT_BALLS, OPT_TARGET, OPT_SPEEDS, OPT_WORKERS, OPT_BUDGET_MS, OPT_BUDGET_NODES, OPT_PLANS,
-       OPT_TOLERANCES, OPT_IN_HAND, OPT_MODEL, OPT_PROFILE, OPT_JSON, OPT_PLOT };
+enum {
+	OPT_DEPTH = 256,
+	OPT_RAILS,
+	OPT_BALLS,
+	OPT_TARGET,
+	OPT_SPEEDS,
+	OPT_WORKERS,
+	OPT_BUDGET_MS,
+	OPT_BUDGET_NODES,
+	OPT_PLANS,
+	OPT_TOLERANCES,
+	OPT_IN_HAND,
+	OPT_MODEL,
+	OPT_PROFILE,
+	OPT_JSON,
+	OPT_PLOT
+};
 
 static const struct option option_table[] = {
 	{"config", required_argument, NULL, 'c'},
@@ -132,7 +150,9 @@ static int take_option(struct options *options, int c)
 		return CMD_OK;
 	case OPT_PLOT:
 		options->plot = optarg;
-		return plot_format_known(optarg) ? CMD_OK : cmd_bad_input("--plot: \"%s\" ends neither in .svg nor in .png", optarg);
+		return plot_format_known(optarg)
+			       ? CMD_OK
+			       : cmd_bad_input("--plot: \"%s\" ends neither in .svg nor in .png", optarg);
 	default:
 		return take_number(options, c);
 	}
@@ -157,7 +177,8 @@ static int parse(struct options *options, int argc, char **argv)
 	return CMD_OK;
 }
 
-/* ---- from options to a request -------------------------------------------------------------------------------------- */
+/* ---- from options to a request --------------------------------------------------------------------------------------
+ */
 
 static double monotonic(void *context)
 {
@@ -180,7 +201,9 @@ static int set_target(struct run *run, const char *text)
 		request->target = TARGET_BALL;
 		request->target_ball = position_find(&run->position, text);
 		if (request->target_ball < 0)
-			return cmd_bad_input("--target: found \"%s\", allowed a colour, any, rules or the ID of a ball in the position", text);
+			return cmd_bad_input("--target: found \"%s\", allowed a colour, any, rules or the ID of a ball "
+					     "in the position",
+					     text);
 	}
 	return CMD_OK;
 }
@@ -227,7 +250,9 @@ static int set_def(struct run *run, const struct options *options)
 	def->memory = run->config.planner.memory;
 	def->now = monotonic;
 	if (options->model && !model_from_name(options->model, &def->model))
-		return cmd_bad_input("--model: found \"%s\", allowed thesis, simple, simple-elastic, real or real-mathavan", options->model);
+		return cmd_bad_input(
+			"--model: found \"%s\", allowed thesis, simple, simple-elastic, real or real-mathavan",
+			options->model);
 	if (options->profile) {
 		const struct cost_profile *profile = config_profile(&run->config, options->profile);
 		if (!profile)
@@ -254,7 +279,8 @@ static int prepare(struct run *run, const struct options *options)
 	return rc < 0 ? cmd_bad_input("billiard plan: no planner: %s", strerror(-rc)) : CMD_OK;
 }
 
-/* ---- output --------------------------------------------------------------------------------------------------------- */
+/* ---- output ---------------------------------------------------------------------------------------------------------
+ */
 
 static const char *pocket_name(const struct run *run, int pocket)
 {
@@ -276,7 +302,8 @@ static json_t *shot_json(const struct run *run, const struct plan_shot *shot)
 							pocket_name(run, shot->potted[i].pocket)));
 	json_t *out = json_object();
 	json_object_set_new(out, "target", shot->target >= 0 ? json_string(ball_name(run, shot->target)) : json_null());
-	json_object_set_new(out, "pocket", shot->pocket >= 0 ? json_string(pocket_name(run, shot->pocket)) : json_null());
+	json_object_set_new(out, "pocket",
+			    shot->pocket >= 0 ? json_string(pocket_name(run, shot->pocket)) : json_null());
 	json_object_set_new(out, "via", via);
 	json_object_set_new(out, "rails", json_integer(shot->rails));
 	json_object_set_new(out, "angle_deg", json_real(shot->shot.angle * degree));
@@ -307,10 +334,11 @@ static int print_json(const struct run *run)
 	}
 	if (status != CMD_OK)
 		return status;
-	return cmd_json_line(json_pack("{s:i, s:I, s:I, s:I, s:I, s:I, s:f, s:b}", "plans", run->result.plan_count, "nodes",
-				       (json_int_t)run->result.nodes, "sims", (json_int_t)run->result.sims, "tried",
-				       (json_int_t)run->result.tried, "landed", (json_int_t)run->result.landed, "refined",
-				       (json_int_t)run->result.refined, "ms", run->ms, "exhausted", run->result.exhausted));
+	return cmd_json_line(json_pack("{s:i, s:I, s:I, s:I, s:I, s:I, s:f, s:b}", "plans", run->result.plan_count,
+				       "nodes", (json_int_t)run->result.nodes, "sims", (json_int_t)run->result.sims,
+				       "tried", (json_int_t)run->result.tried, "landed", (json_int_t)run->result.landed,
+				       "refined", (json_int_t)run->result.refined, "ms", run->ms, "exhausted",
+				       run->result.exhausted));
 }
 
 static void print_shot(const struct run *run, const struct plan_shot *shot)
@@ -320,13 +348,13 @@ static void print_shot(const struct run *run, const struct plan_shot *shot)
 	for (int i = 0; i < shot->chain_count && v < sizeof via; i++)
 		v += (size_t)snprintf(via + v, sizeof via - v, "%s%s", i ? " > " : "", ball_name(run, shot->chain[i]));
 	for (int i = 0; i < shot->potted_count && p < sizeof potted; i++)
-		p += (size_t)snprintf(potted + p, sizeof potted - p, "%s%s %s", i ? ", " : "", ball_name(run, shot->potted[i].ball),
-				      pocket_name(run, shot->potted[i].pocket));
+		p += (size_t)snprintf(potted + p, sizeof potted - p, "%s%s %s", i ? ", " : "",
+				      ball_name(run, shot->potted[i].ball), pocket_name(run, shot->potted[i].pocket));
 	printf("%8.2f %8.0f %5d  %-28s %s", shot->shot.angle * degree, shot->shot.speed * mm, shot->rails, via,
 	       shot->target < 0 ? "contact only" : potted);
 	if (!isnan(shot->success))
-		printf("  (+-%.2f deg, +-%.0f %%, success %.0f %%)", shot->tolerance_angle * degree, shot->tolerance_speed * 100,
-		       shot->success * 100);
+		printf("  (+-%.2f deg, +-%.0f %%, success %.0f %%)", shot->tolerance_angle * degree,
+		       shot->tolerance_speed * 100, shot->success * 100);
 	putchar('\n');
 }
 
@@ -343,8 +371,9 @@ static int print_table(const struct run *run)
 		}
 	}
 	const struct plan_result *result = &run->result;
-	printf("%d plans, %llu nodes, %llu simulations (%llu shots tried, %llu land", result->plan_count, (unsigned long long)result->nodes,
-	       (unsigned long long)result->sims, (unsigned long long)result->tried, (unsigned long long)result->landed);
+	printf("%d plans, %llu nodes, %llu simulations (%llu shots tried, %llu land", result->plan_count,
+	       (unsigned long long)result->nodes, (unsigned long long)result->sims, (unsigned long long)result->tried,
+	       (unsigned long long)result->landed);
 	if (result->refined > 0)
 		printf(", %llu with the aim refined", (unsigned long long)result->refined);
 	printf("), %.2f ms, %s\n", run->ms, result->exhausted ? "exhausted" : "not exhausted");
@@ -360,7 +389,8 @@ static int plot_plans(struct run *run, const char *file)
 		for (int s = 0; s < run->result.plan[i].shot_count; s++) {
 			struct trace trace;
 			trace_init(&trace, run->entry, TRACE_MAX);
-			plan_shot_replay(&run->config.table, &run->def.model, &run->result.plan[i].shot[s], run->position.count, &trace);
+			plan_shot_replay(&run->config.table, &run->def.model, &run->result.plan[i].shot[s],
+					 run->position.count, &trace);
 			snprintf(path, sizeof path, "%.*s-%d-%d%s", (int)(dot - file), file, i + 1, s + 1, dot);
 			if (plot_trace(&run->config.table, &trace, path, err, sizeof err) < 0)
 				return cmd_bad_input("%s", err);
@@ -383,7 +413,14 @@ static int search(struct run *run, const struct options *options)
 
 int cmd_plan(int argc, char **argv)
 {
-	struct options options = {.depth = -1, .rails = -1, .balls = -1, .speeds = -1, .plans = -1, .tolerances = -1, .workers = -1, .budget_ms = -1};
+	struct options options = {.depth = -1,
+				  .rails = -1,
+				  .balls = -1,
+				  .speeds = -1,
+				  .plans = -1,
+				  .tolerances = -1,
+				  .workers = -1,
+				  .budget_ms = -1};
 	int status = parse(&options, argc, argv);
 	if (status != CMD_OK)
 		return status < 0 ? CMD_OK : status;

@@ -5,8 +5,8 @@
 
 #include "physics/inverse.h"
 
-/* Aims beside a pocket's middle: across it and towards the bed, shares of its radius; each on both sides. A ball that comes flat along a
- * cushion must fall at the front of a pocket, before it meets the far jaw or the near nose. */
+/* Aims beside a pocket's middle: across it and towards the bed, shares of its radius; each on both sides. A ball that
+ * comes flat along a cushion must fall at the front of a pocket, before it meets the far jaw or the near nose. */
 static const struct {
 	double across, front;
 } aim_place[] = {{0, 0}, {0.5, 0.8}, {0.8, 0}, {0.2, 0.9}, {0.9, 0.35}};
@@ -15,8 +15,8 @@ static const double AIM_COST = 0.25;
 /* Share of a pocket's radius that the middle of a ball along a cushion may lie off its middle. */
 static const double ALONG_SPREAD = 0.8;
 
-/* A ball this near to a cushion (m) cannot be hit so that it goes straight for a pocket along it: the one that strikes it would meet the
- * cushion first. It is played against the cushion by a small angle, and comes off it by the same. */
+/* A ball this near to a cushion (m) cannot be hit so that it goes straight for a pocket along it: the one that strikes
+ * it would meet the cushion first. It is played against the cushion by a small angle, and comes off it by the same. */
 static const double FROZEN = 2e-3, ALONG_TILT = 0.5 * M_PI / 180;
 
 /* Where to aim a ball at from on a cushion; false when it lies on none or the pocket is not at its end. */
@@ -28,7 +28,8 @@ static bool along_point(const struct scene *scene, int pocket, vec2 from, vec2 *
 		vec2 along = vec2_perp(m->normal);
 		double ahead = vec2_dot(vec2_sub(p->centre, from), along);
 		vec2 foot = vec2_madd(from, ahead, along);
-		if (vec2_dot(vec2_sub(from, m->point), m->normal) > FROZEN || vec2_dist(foot, p->centre) > ALONG_SPREAD * p->radius)
+		if (vec2_dot(vec2_sub(from, m->point), m->normal) > FROZEN ||
+		    vec2_dist(foot, p->centre) > ALONG_SPREAD * p->radius)
 			continue;
 		*point = vec2_madd(foot, -fabs(ahead) * tan(ALONG_TILT), m->normal);
 		return true;
@@ -106,8 +107,8 @@ static double way_length2(const struct way *way)
 	return sum;
 }
 
-/* No ball stands in the way of ball. The cue ball has left its place by then; balls of the chain are hit on purpose, so for them the
- * clearance does not count, but they must not be met before their turn. */
+/* No ball stands in the way of ball. The cue ball has left its place by then; balls of the chain are hit on purpose, so
+ * for them the clearance does not count, but they must not be met before their turn. */
 static bool way_is_free(const struct scene *scene, const struct node *node, const struct way *way, int ball)
 {
 	double diameter = 2 * scene->table->ball_radius;
@@ -122,7 +123,8 @@ static bool way_is_free(const struct scene *scene, const struct node *node, cons
 		if (!segment_is_free(scene->ball, scene->count, others, way->point[i], way->point[i + 1],
 				     diameter + scene->profile->clearance))
 			return false;
-		if (tight && !segment_is_free(scene->ball, scene->count, tight, way->point[i], way->point[i + 1], diameter))
+		if (tight &&
+		    !segment_is_free(scene->ball, scene->count, tight, way->point[i], way->point[i + 1], diameter))
 			return false;
 	}
 	return true;
@@ -157,8 +159,8 @@ static void extend(const struct scene *scene, const struct node *node, const str
 }
 
 /* Ball over one sequence to the node's target: cheap tests first. */
-static bool try_way(const struct scene *scene, const struct node *node, const struct images *images, int ball, int sequence,
-		    struct node *child)
+static bool try_way(const struct scene *scene, const struct node *node, const struct images *images, int ball,
+		    int sequence, struct node *child)
 {
 	const struct cost_profile *profile = scene->profile;
 	vec2 start = scene->ball[ball].pos;
@@ -205,8 +207,8 @@ static uint32_t next_balls(const struct scene *scene, const struct node *node)
 }
 
 /* Children of one ball. */
-static int expand_ball(const struct scene *scene, const struct node *node, const struct images *images, int ball, struct node *child,
-		       int capacity, bool *overflow)
+static int expand_ball(const struct scene *scene, const struct node *node, const struct images *images, int ball,
+		       struct node *child, int capacity, bool *overflow)
 {
 	int count = 0;
 	for (int s = 0; s < images->count; s++) {
@@ -222,8 +224,8 @@ static int expand_ball(const struct scene *scene, const struct node *node, const
 }
 
 /* The root for balls on cushions: each has an aim of its own, and no cushions in between. */
-static int expand_along(const struct scene *scene, const struct node *node, uint32_t balls, struct node *child, int capacity,
-			bool *overflow)
+static int expand_along(const struct scene *scene, const struct node *node, uint32_t balls, struct node *child,
+			int capacity, bool *overflow)
 {
 	int count = 0;
 	for (int b = 0; b < scene->count; b++) {
@@ -238,7 +240,8 @@ static int expand_along(const struct scene *scene, const struct node *node, uint
 	return count;
 }
 
-int candidate_expand(const struct scene *scene, const struct node *node, struct node *child, int capacity, bool *overflow)
+int candidate_expand(const struct scene *scene, const struct node *node, struct node *child, int capacity,
+		     bool *overflow)
 {
 	assert(!node->complete);
 	uint32_t balls = next_balls(scene, node);

@@ -44,8 +44,8 @@ double cost_angle(double cos_angle)
 
 double cost_search(const struct table *table, const struct cost_profile *profile, const struct cost_way *way)
 {
-	double cost = profile->w_distance * cost_distance(table, way->way2) * way->carry + profile->w_angle * way->angles +
-		      profile->w_rails * profile->rail_cost * way->rails;
+	double cost = profile->w_distance * cost_distance(table, way->way2) * way->carry +
+		      profile->w_angle * way->angles + profile->w_rails * profile->rail_cost * way->rails;
 	return way->strikes ? cost + profile->w_balls * profile->ball_cost : cost;
 }
 

@@ -13,11 +13,11 @@ struct frontier_entry {
 };
 
 struct frontier {
-	struct node *node;	/* owned, capacity */
-	struct frontier_entry *heap;	/* owned, capacity */
-	uint32_t *free_slot;	/* owned, capacity */
+	struct node *node;	     /* owned, capacity */
+	struct frontier_entry *heap; /* owned, capacity */
+	uint32_t *free_slot;	     /* owned, capacity */
 	uint32_t capacity, count, order;
-	bool overflow;		/* a node had to be dropped */
+	bool overflow; /* a node had to be dropped */
 };
 
 /* Takes at most that many bytes. 0, -EINVAL (no room for a single node) or -ENOMEM. */

@@ -53,7 +53,8 @@ static int grow(struct mirrors *mirrors, int begin, int end)
 			if (p->length > 0 && p->mirror == m)
 				continue;
 			assert(count < SEQUENCE_MAX);
-			mirrors->sequence[count++] = (struct sequence){(uint16_t)parent, (uint8_t)m, (uint8_t)(p->length + 1)};
+			mirrors->sequence[count++] =
+				(struct sequence){(uint16_t)parent, (uint8_t)m, (uint8_t)(p->length + 1)};
 		}
 	return count;
 }

@@ -10,12 +10,13 @@ enum { MIRROR_MAX = 8, MIRROR_SPANS = 4, SEQUENCE_MAX = 1 + MIRROR_MAX + MIRROR_
 
 /* One side of the bed, seen by a ball's centre: the noses shifted by a radius. Cushions in one line are one mirror. */
 struct mirror {
-	vec2 point, normal;	/* a point of the shifted line; unit, into the bed */
-	double span[MIRROR_SPANS][2];	/* where there is a nose, along vec2_perp(normal) */
+	vec2 point, normal;	      /* a point of the shifted line; unit, into the bed */
+	double span[MIRROR_SPANS][2]; /* where there is a nose, along vec2_perp(normal) */
 	int span_count;
 };
 
-/* Cushions in a row, as a tree that grows from the target: a ball meets mirror first and then those of parent. 0 is the direct way. */
+/* Cushions in a row, as a tree that grows from the target: a ball meets mirror first and then those of parent. 0 is the
+ * direct way. */
 struct sequence {
 	uint16_t parent;
 	uint8_t mirror, length;
@@ -25,7 +26,7 @@ struct mirrors {
 	struct mirror mirror[MIRROR_MAX];
 	int count;
 	struct sequence sequence[SEQUENCE_MAX];
-	int sequence_count[PLAN_RAILS_MAX + 1];	/* sequences of at most that many cushions */
+	int sequence_count[PLAN_RAILS_MAX + 1]; /* sequences of at most that many cushions */
 };
 
 /* Takes the main rails of a finished table. */
@@ -34,7 +35,7 @@ void mirrors_init(struct mirrors *mirrors, const struct table *table);
 /* Images of a target and of a direction there, for each sequence of at most rails cushions. */
 struct images {
 	vec2 at[SEQUENCE_MAX], direction[SEQUENCE_MAX];
-	bool valid[SEQUENCE_MAX];	/* false: out of the definition domain (4.14 to 4.18) */
+	bool valid[SEQUENCE_MAX]; /* false: out of the definition domain (4.14 to 4.18) */
 	int count;
 };
 void images_init(struct images *images, const struct mirrors *mirrors, vec2 target, vec2 direction, int rails);
@@ -42,7 +43,7 @@ void images_init(struct images *images, const struct mirrors *mirrors, vec2 targ
 /* A way of one ball: start, cushion contacts, end. */
 struct way {
 	vec2 point[PLAN_RAILS_MAX + 2];
-	double leg[PLAN_RAILS_MAX + 1];	/* m */
+	double leg[PLAN_RAILS_MAX + 1]; /* m */
 	vec2 normal[PLAN_RAILS_MAX];	/* of the cushions met */
 	int rails;
 };

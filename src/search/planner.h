@@ -9,15 +9,15 @@
 #include "search/shot.h"
 
 enum {
-	BATCH = 16,		/* nodes worked on at a time: never depends on the number of workers, so that results do not */
-	RANKED_MAX = 64,	/* plans whose success is found when a profile ranks by it */
-	SPEEDS_MAX = 32,		/* start speeds of one candidate */
-	CHILDREN_MAX = 2048,	/* of one expansion */
+	BATCH = 16,	 /* nodes worked on at a time: never depends on the number of workers, so that results do not */
+	RANKED_MAX = 64, /* plans whose success is found when a profile ranks by it */
+	SPEEDS_MAX = 32, /* start speeds of one candidate */
+	CHILDREN_MAX = 2048, /* of one expansion */
 	STATES_MAX = 2048,
-	AIMS_MAX = 10,			/* aims at a pocket: up to 9 points of it, and along a cushion */
+	AIMS_MAX = 10, /* aims at a pocket: up to 9 points of it, and along a cushion */
 	ROOTS_MAX = POCKET_MAX * AIMS_MAX,
-	SAFETY_STEP = 2,	/* after so many batches without a proposal a simple contact is proposed */
-	SAFETY_LIST = PLAN_SHOTS_MAX,	/* place of the contact shot among the lists of solutions */
+	SAFETY_STEP = 2,	      /* after so many batches without a proposal a simple contact is proposed */
+	SAFETY_LIST = PLAN_SHOTS_MAX, /* place of the contact shot among the lists of solutions */
 	NO_STATE = -1
 };
 
@@ -25,13 +25,13 @@ enum {
 struct state {
 	struct ball ball[BALL_MAX];
 	struct rules_state rules;
-	struct scene scene;	/* borrows ball */
-	struct record record;	/* the shot that led here, unless it is a root */
-	int32_t parent;		/* NO_STATE for a root */
-	int shots;		/* played before */
-	double cost;		/* of those */
-	uint64_t key;		/* of the shots before, whichever worker found them; 0 for a root */
-	_Atomic uint8_t landed[BALL_MAX];	/* bit per pocket that the ball was potted into as meant */
+	struct scene scene;		  /* borrows ball */
+	struct record record;		  /* the shot that led here, unless it is a root */
+	int32_t parent;			  /* NO_STATE for a root */
+	int shots;			  /* played before */
+	double cost;			  /* of those */
+	uint64_t key;			  /* of the shots before, whichever worker found them; 0 for a root */
+	_Atomic uint8_t landed[BALL_MAX]; /* bit per pocket that the ball was potted into as meant */
 };
 
 /* What the simulation made of a complete node at one start speed. */
@@ -54,14 +54,14 @@ struct slot {
 /* A sequence of shots: all but the last are found by going up from state. */
 struct solution {
 	double cost;
-	uint64_t key;		/* decides among equal costs: the same whatever was found first */
+	uint64_t key; /* decides among equal costs: the same whatever was found first */
 	int32_t state;
 	struct record last;
 };
 
 struct solutions {
 	struct solution item[PLAN_MAX];
-	uint16_t order[PLAN_MAX];	/* indices of items, best first */
+	uint16_t order[PLAN_MAX]; /* indices of items, best first */
 	int count, limit;
 };
 
@@ -79,13 +79,13 @@ struct planner {
 	struct planner_def def;
 	struct mirrors mirrors;
 	struct pool *pool;
-	struct workspace *work;		/* one a worker */
-	struct slot *slot;		/* BATCH */
-	struct state *state;		/* STATES_MAX */
-	struct solutions *solutions;	/* by number of shots, and at SAFETY_LIST the contact shot */
-	struct plan *plan;		/* PLAN_MAX, what results point to */
+	struct workspace *work;	     /* one a worker */
+	struct slot *slot;	     /* BATCH */
+	struct state *state;	     /* STATES_MAX */
+	struct solutions *solutions; /* by number of shots, and at SAFETY_LIST the contact shot */
+	struct plan *plan;	     /* PLAN_MAX, what results point to */
 	struct frontier frontier;
-	struct crew *crew;		/* NULL for SCHEME_BATCH */
+	struct crew *crew; /* NULL for SCHEME_BATCH */
 	struct shown shown;
 	atomic_bool cancel;
 
@@ -94,7 +94,7 @@ struct planner {
 	int ball_count, cue, state_count, batch_count;
 	uint64_t nodes, sims, tried, landed, refined;
 	double deadline;
-	bool overflow, cut;		/* something was dropped; ended before its time */
+	bool overflow, cut; /* something was dropped; ended before its time */
 };
 
 /* The best so far, with at most limit plans filled in; 0: all. */
@@ -116,7 +116,8 @@ bool search_is_over(const struct planner *planner);
 /* Simulates a complete node at all its start speeds. */
 void slot_play(const struct planner *planner, struct slot *slot, struct workspace *work);
 
-/* Turns the aim of record->shot until the meant ball goes where it should; up to some 30 simulations. True when it then falls. */
+/* Turns the aim of record->shot until the meant ball goes where it should; up to some 30 simulations. True when it then
+ * falls. */
 bool shot_refine(const struct planner *planner, struct slot *slot, struct workspace *work, struct record *record,
 		 struct rules_outcome *outcome);
 
@@ -129,7 +130,8 @@ int state_roots(const struct planner *planner, int index, struct node root[ROOTS
 /* Nothing on the table is left to play for. */
 bool outcome_is_cleared(const struct rules_outcome *outcome, int count);
 /* The position that a shot from parent leads to; without its scene. */
-void state_set(struct state *state, const struct planner *planner, const struct solution *shot, const struct rules_outcome *outcome);
+void state_set(struct state *state, const struct planner *planner, const struct solution *shot,
+	       const struct rules_outcome *outcome);
 
 /* The sequence that ends with record, played from a state. */
 struct solution solution_make(const struct planner *planner, uint32_t state, const struct record *record);
@@ -141,13 +143,15 @@ struct solution *solutions_at(struct solutions *solutions, int rank);
 struct solutions *best_solutions(struct planner *planner);
 
 /* Tolerance and success of one record played from state. */
-void tolerance_find(const struct planner *planner, const struct state *state, struct record *record, struct workspace *work);
+void tolerance_find(const struct planner *planner, const struct state *state, struct record *record,
+		    struct workspace *work);
 
-/* Finds tolerance and success of as many of the best plans as the request or the profile asks for, and ranks by success if the profile does. */
+/* Finds tolerance and success of as many of the best plans as the request or the profile asks for, and ranks by success
+ * if the profile does. */
 void rank_solutions(struct planner *planner);
 
-/* With nothing to pot (yet): the simplest legal contact becomes the one solution. thorough: beside the middle of balls, over cushions, at
- * last a fan of directions and the cheapest foul. False when there is none. */
+/* With nothing to pot (yet): the simplest legal contact becomes the one solution. thorough: beside the middle of balls,
+ * over cushions, at last a fan of directions and the cheapest foul. False when there is none. */
 bool safety_find(struct planner *planner, bool thorough);
 
 #endif

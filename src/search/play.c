@@ -31,15 +31,16 @@ static bool rename_fluke(const struct cost_profile *profile, const struct scene 
 	return false;
 }
 
-/* Plays record->shot; where mirroring is not how balls come off cushions and throw is felt, the aim is refined. True for a proposal. */
+/* Plays record->shot; where mirroring is not how balls come off cushions and throw is felt, the aim is refined. True
+ * for a proposal. */
 static bool try_shot(const struct planner *planner, struct slot *slot, struct workspace *work, struct record *record,
 		     struct rules_outcome *outcome)
 {
 	const struct state *state = &planner->state[slot->node.state];
 	slot->sims++;
 	slot->tried++;
-	bool played = shot_play(work, planner->def.table, &planner->def.model, state->ball, planner->ball_count, &state->rules, record,
-				outcome);
+	bool played = shot_play(work, planner->def.table, &planner->def.model, state->ball, planner->ball_count,
+				&state->rules, record, outcome);
 	bool landed = played && record->foul == 0 && shot_is_as_meant(record);
 	slot->landed += landed;
 	if (!planner->def.model.thesis_motion && played) {
@@ -63,7 +64,8 @@ void slot_play(const struct planner *planner, struct slot *slot, struct workspac
 			break;
 		if (!try_shot(planner, slot, work, record, &played->outcome))
 			continue;
-		record->cost = record->search_cost + cost_result(profile, record->points, record->shot.speed, record->search_cost);
+		record->cost = record->search_cost +
+			       cost_result(profile, record->points, record->shot.speed, record->search_cost);
 		slot->played_count++;
 	}
 }

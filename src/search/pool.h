@@ -6,17 +6,17 @@
 typedef void pool_fn(void *context, int item, int worker);
 
 struct pool;
-/* workers, the caller among them: 1..PLAN_WORKERS_MAX + 1. 0, -EINVAL, -ENOMEM or -EAGAIN (no thread to be had); *out is NULL on failure.
- * Caller destroys. */
+/* workers, the caller among them: 1..PLAN_WORKERS_MAX + 1. 0, -EINVAL, -ENOMEM or -EAGAIN (no thread to be had); *out
+ * is NULL on failure. Caller destroys. */
 int pool_create(struct pool **out, int workers);
-void pool_destroy(struct pool *pool);	/* NULL is fine */
+void pool_destroy(struct pool *pool); /* NULL is fine */
 
-/* Calls fn for items 0..count - 1, each once, in any order and on any worker; the caller is worker 0 and returns when all are done.
- * What the items wrote is visible to the caller then. From one thread at a time. */
+/* Calls fn for items 0..count - 1, each once, in any order and on any worker; the caller is worker 0 and returns when
+ * all are done. What the items wrote is visible to the caller then. From one thread at a time. */
 void pool_for(struct pool *pool, int count, pool_fn *fn, void *context);
 
-/* The same in two halves, for a caller that has other things to do in between: items are worked on by the pool's own threads alone, each
- * by another one when there are at most as many items. */
+/* The same in two halves, for a caller that has other things to do in between: items are worked on by the pool's own
+ * threads alone, each by another one when there are at most as many items. */
 void pool_begin(struct pool *pool, int count, pool_fn *fn, void *context);
 void pool_end(struct pool *pool);
 

@@ -62,7 +62,8 @@ void rank_solutions(struct planner *planner)
 {
 	struct solutions *list = best_solutions(planner);
 	bool by_success = planner->def.profile.rank_by_success;
-	int wanted = by_success && planner->request->tolerances < RANKED_MAX ? RANKED_MAX : planner->request->tolerances;
+	int wanted =
+		by_success && planner->request->tolerances < RANKED_MAX ? RANKED_MAX : planner->request->tolerances;
 	struct ranking ranking = {.planner = planner, .count = 0};
 	if (!list)
 		return;

@@ -1,20 +1,21 @@
-/* The aim of a shot, refined against the simulation: mirrors and centre-to-centre contacts are where it starts from, not where it ends. */
+/* The aim of a shot, refined against the simulation: mirrors and centre-to-centre contacts are where it starts from,
+ * not where it ends. */
 #include <math.h>
 
 #include "search/planner.h"
 
 enum { STEPS_MAX = 8, HALVINGS_MAX = 3, FASTER_MAX = 4 };
-static const double PROBE = 2e-4;	/* rad, first step of the secant */
-static const double STEP_MAX = 0.06;	/* rad */
-static const double GOOD = 1e-3;	/* m beside the goal that is good enough */
-static const double FASTER = 1.12;	/* a shot that stops short is played faster by this */
+static const double PROBE = 2e-4;    /* rad, first step of the secant */
+static const double STEP_MAX = 0.06; /* rad */
+static const double GOOD = 1e-3;     /* m beside the goal that is good enough */
+static const double FASTER = 1.12;   /* a shot that stops short is played faster by this */
 
 /* How far a chain got, and by how much its last leg passes its goal. */
 struct miss {
-	int stage;	/* contacts and cushions made as meant */
-	double offset;	/* m, of the goal to the left of the way */
-	bool is_short;	/* the ball stopped before its goal */
-	bool falls;	/* as meant, and legal */
+	int stage;     /* contacts and cushions made as meant */
+	double offset; /* m, of the goal to the left of the way */
+	bool is_short; /* the ball stopped before its goal */
+	bool falls;    /* as meant, and legal */
 };
 
 struct aiming {
@@ -28,9 +29,9 @@ struct aiming {
 
 /* The ball whose leg is looked at. */
 struct leg {
-	int place;	/* in the record's chain, 0 the cue ball */
+	int place; /* in the record's chain, 0 the cue ball */
 	int ball, cushions;
-	vec2 pos, vel;	/* the last that is known of it */
+	vec2 pos, vel; /* the last that is known of it */
 };
 
 static const struct goal *goal_of(const struct aiming *aiming, const struct leg *leg)
@@ -57,7 +58,8 @@ static bool follow(struct leg *leg, const struct aiming *aiming, const struct tr
 		return true;
 	}
 	case EVENT_CUSHION:
-		if (!aiming->planner->def.table->cushion[event->other].main_rail || leg->cushions == goal_of(aiming, leg)->rails)
+		if (!aiming->planner->def.table->cushion[event->other].main_rail ||
+		    leg->cushions == goal_of(aiming, leg)->rails)
 			return false;
 		leg->cushions++;
 		break;
@@ -102,8 +104,8 @@ static struct miss aim_and_look(struct aiming *aiming, double angle)
 		return (struct miss){.stage = -1};
 	aiming->record->shot.angle = angle;
 	aiming->slot->sims++;
-	if (!shot_play(aiming->work, planner->def.table, &planner->def.model, state->ball, planner->ball_count, &state->rules,
-		       aiming->record, aiming->outcome))
+	if (!shot_play(aiming->work, planner->def.table, &planner->def.model, state->ball, planner->ball_count,
+		       &state->rules, aiming->record, aiming->outcome))
 		return (struct miss){.stage = -1};
 	return look(aiming);
 }

@@ -7,7 +7,8 @@ static const double RESPOT_GAP = 1e-9;
 
 static bool inside(const struct table *table, vec2 pos)
 {
-	return fabs(pos.x) <= table->length / 2 - table->ball_radius && fabs(pos.y) <= table->width / 2 - table->ball_radius;
+	return fabs(pos.x) <= table->length / 2 - table->ball_radius &&
+	       fabs(pos.y) <= table->width / 2 - table->ball_radius;
 }
 
 bool respot_is_free(const struct table *table, const struct ball *ball, int count, vec2 pos)
@@ -60,8 +61,8 @@ bool respot_breadth_first(const struct table *table, const struct ball *ball, in
 		for (int i = 0; i < 4; i++) {
 			struct cell next = {(int8_t)(at.x + step[i].x), (int8_t)(at.y + step[i].y)};
 			vec2 place = {spot.x + next.x * width, spot.y + next.y * width};
-			if (next.x < -GRID || next.x > GRID || next.y < -GRID || next.y > GRID || !inside(table, place) ||
-			    seen[next.x + GRID][next.y + GRID])
+			if (next.x < -GRID || next.x > GRID || next.y < -GRID || next.y > GRID ||
+			    !inside(table, place) || seen[next.x + GRID][next.y + GRID])
 				continue;
 			if (respot_is_free(table, ball, count, place)) {
 				*pos = place;

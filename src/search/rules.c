@@ -6,7 +6,7 @@
 
 /* The rules as one table: what each state lets be struck, what a miss costs at least, what comes after a pot. */
 struct rule {
-	bool red, colours, lowest_only;	/* what is on */
+	bool red, colours, lowest_only; /* what is on */
 	int least_foul;
 	enum rules_on after_pot;
 };
@@ -15,7 +15,8 @@ static const struct rule rule_table[] = {
 	[ON_ANY] = {.red = true, .colours = true, .lowest_only = false, .least_foul = 4, .after_pot = ON_ANY},
 	[ON_RED] = {.red = true, .colours = false, .lowest_only = false, .least_foul = 4, .after_pot = ON_COLOUR},
 	[ON_COLOUR] = {.red = false, .colours = true, .lowest_only = false, .least_foul = 4, .after_pot = ON_RED},
-	[ON_CLEARANCE] = {.red = false, .colours = true, .lowest_only = true, .least_foul = 4, .after_pot = ON_CLEARANCE},
+	[ON_CLEARANCE] =
+		{.red = false, .colours = true, .lowest_only = true, .least_foul = 4, .after_pot = ON_CLEARANCE},
 };
 
 static bool is_colour(enum ball_colour colour)
@@ -80,9 +81,9 @@ static int first_contact(const struct trace *trace, int cue)
 
 /* What a finished shot came to, before it is judged. */
 struct facts {
-	const struct ball *start;	/* before the shot */
+	const struct ball *start; /* before the shot */
 	int count, cue, first;
-	int potted[BALL_MAX], potted_count;	/* object balls */
+	int potted[BALL_MAX], potted_count; /* object balls */
 	bool cue_potted;
 };
 
@@ -130,7 +131,8 @@ static int larger(int a, int b)
 	return a > b ? a : b;
 }
 
-/* Penalty of the shot, 0 when it is legal: the highest of all that is wrong with it. Touching a cushion first is legal. */
+/* Penalty of the shot, 0 when it is legal: the highest of all that is wrong with it. Touching a cushion first is legal.
+ */
 static int penalty(const struct rules_state *state, const struct facts *facts, int nominated)
 {
 	int foul = 0;
@@ -146,9 +148,11 @@ static int penalty(const struct rules_state *state, const struct facts *facts, i
 }
 
 /* Puts potted colours back, the most valuable first. Not those that the clearance has taken off for good. */
-static void respot_colours(const struct table *table, const struct rules_state *state, struct rules_outcome *out, int count)
+static void respot_colours(const struct table *table, const struct rules_state *state, struct rules_outcome *out,
+			   int count)
 {
-	bool for_good = out->foul == 0 && (state->on == ON_CLEARANCE || (state->on == ON_ANY && count_reds(out->ball, count) == 0));
+	bool for_good = out->foul == 0 &&
+			(state->on == ON_CLEARANCE || (state->on == ON_ANY && count_reds(out->ball, count) == 0));
 	if (for_good)
 		return;
 	for (int colour = COLOUR_BLACK; colour >= COLOUR_YELLOW; colour--)
@@ -164,7 +168,8 @@ static void respot_colours(const struct table *table, const struct rules_state *
 		}
 }
 
-static struct rules_state next_state(const struct rules_state *state, const struct rules_outcome *out, bool potted, int count)
+static struct rules_state next_state(const struct rules_state *state, const struct rules_outcome *out, bool potted,
+				     int count)
 {
 	struct rules_state next = rules_state_from_position(out->ball, count);
 	next.in_hand = out->cue_potted;

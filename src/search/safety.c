@@ -18,7 +18,7 @@ struct aim {
 };
 
 struct aims {
-	struct aim aim[AIM_MAX];	/* best first */
+	struct aim aim[AIM_MAX]; /* best first */
 	int count;
 };
 
@@ -62,7 +62,8 @@ static void aim_at(const struct scene *scene, int state, int ball, double off, i
 		bool is_free = true;
 		double way2 = 0;
 		for (int i = 0; i <= way.rails && is_free; i++) {
-			is_free = segment_is_free(scene->ball, scene->count, others, way.point[i], way.point[i + 1], diameter);
+			is_free = segment_is_free(scene->ball, scene->count, others, way.point[i], way.point[i + 1],
+						  diameter);
 			way2 += way.leg[i] * way.leg[i];
 		}
 		vec2 direction = vec2_unit(vec2_sub(way.point[1], way.point[0]));
@@ -75,7 +76,8 @@ static void aim_at(const struct scene *scene, int state, int ball, double off, i
 			.state = (uint16_t)state,
 		};
 		/* A cue over another ball is awkward, not impossible. */
-		if (!cue_has_room(scene->table, scene->profile, scene->ball, scene->count, ~(1u << scene->cue), cue, direction))
+		if (!cue_has_room(scene->table, scene->profile, scene->ball, scene->count, ~(1u << scene->cue), cue,
+				  direction))
 			aim.cost += 1;
 		if (is_free)
 			add_aim(aims, &aim);
@@ -99,7 +101,7 @@ static bool play(struct planner *planner, const struct aim *aim, struct record *
 	struct rules_outcome outcome;
 	memset(record, 0, sizeof *record);
 	record->shot = aim->shot;
-	record->target = aim->ball;	/* the ball named, for the judge */
+	record->target = aim->ball; /* the ball named, for the judge */
 	record->chain[0] = (int16_t)planner->cue;
 	record->rails = aim->rails;
 	record->search_cost = aim->cost;
@@ -128,7 +130,9 @@ static bool fan_find(struct planner *planner)
 	struct record best, record;
 	struct aim aim = {.cost = 10, .ball = -1}, best_aim = aim;
 	int best_foul = 1000;
-	for (int i = 0; i < FAN_SPEEDS * FAN_ANGLES && best_foul > 0 && !search_is_cancelled(planner) && (best_foul == 1000 || !search_is_over(planner)); i++) {
+	for (int i = 0; i < FAN_SPEEDS * FAN_ANGLES && best_foul > 0 && !search_is_cancelled(planner) &&
+			(best_foul == 1000 || !search_is_over(planner));
+	     i++) {
 		aim.shot.angle = 2 * M_PI * (i % FAN_ANGLES) / FAN_ANGLES;
 		aim.shot.speed = planner->def.profile.max_speed / (i < FAN_ANGLES ? 2 : 1);
 		if (!play(planner, &aim, &record) || record.foul >= best_foul)

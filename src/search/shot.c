@@ -23,8 +23,8 @@ static void note_potted(const struct trace *trace, struct record *record)
 	}
 }
 
-bool shot_play(struct workspace *work, const struct table *table, const struct model *model, const struct ball *ball, int count,
-	       const struct rules_state *state, struct record *record, struct rules_outcome *outcome)
+bool shot_play(struct workspace *work, const struct table *table, const struct model *model, const struct ball *ball,
+	       int count, const struct rules_state *state, struct record *record, struct rules_outcome *outcome)
 {
 	const struct sim_limits limits = {.max_time = INFINITY, .max_events = SHOT_EVENTS_MAX};
 	int cue = cue_ball(ball, count);
@@ -78,8 +78,8 @@ void shot_export(const struct record *record, const struct ball *ball, int count
 	}
 }
 
-bool plan_shot_replay(const struct table *table, const struct model *model, const struct plan_shot *shot, int ball_count,
-		      struct trace *trace)
+bool plan_shot_replay(const struct table *table, const struct model *model, const struct plan_shot *shot,
+		      int ball_count, struct trace *trace)
 {
 	const struct sim_limits limits = {.max_time = INFINITY, .max_events = SHOT_EVENTS_MAX};
 	struct sim sim;

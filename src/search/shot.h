@@ -19,17 +19,17 @@ struct record {
 	double search_cost, cost, tolerance_angle, tolerance_speed, success;
 	uint64_t hash;
 	int16_t target, pocket;
-	int16_t chain[PLAN_CHAIN_MAX];	/* cue ball first */
+	int16_t chain[PLAN_CHAIN_MAX]; /* cue ball first */
 	int chain_count, rails, potted_count, points, foul;
 	struct {
 		int16_t ball, pocket;
 	} potted[PLAN_POTTED_MAX];
 };
 
-/* Simulates record->shot from ball and judges it by state, record->target being the named ball: fills potted, points, foul, hash.
- * False when the simulation does not end within its events; outcome is unchanged then. */
-bool shot_play(struct workspace *work, const struct table *table, const struct model *model, const struct ball *ball, int count,
-	       const struct rules_state *state, struct record *record, struct rules_outcome *outcome);
+/* Simulates record->shot from ball and judges it by state, record->target being the named ball: fills potted, points,
+ * foul, hash. False when the simulation does not end within its events; outcome is unchanged then. */
+bool shot_play(struct workspace *work, const struct table *table, const struct model *model, const struct ball *ball,
+	       int count, const struct rules_state *state, struct record *record, struct rules_outcome *outcome);
 
 /* The meant ball falls into the meant pocket. */
 bool shot_is_as_meant(const struct record *record);

@@ -50,8 +50,9 @@ bool solutions_add(struct solutions *solutions, const struct solution *solution)
 	if (solutions->count < solutions->limit)
 		solutions->count++;
 	else
-		slot = solutions->order[solutions->count - 1];	/* the worst one goes */
-	memmove(&solutions->order[at + 1], &solutions->order[at], (size_t)(solutions->count - 1 - at) * sizeof solutions->order[0]);
+		slot = solutions->order[solutions->count - 1]; /* the worst one goes */
+	memmove(&solutions->order[at + 1], &solutions->order[at],
+		(size_t)(solutions->count - 1 - at) * sizeof solutions->order[0]);
 	solutions->order[at] = (uint16_t)slot;
 	solutions->item[slot] = *solution;
 	return true;

@@ -16,7 +16,8 @@ bool search_is_over(const struct planner *planner)
 	return planner->def.now && planner->def.now(planner->def.now_context) >= planner->deadline;
 }
 
-/* Under which rules the first shot is judged. A named colour is played as after a red, or in its turn when no red is left. */
+/* Under which rules the first shot is judged. A named colour is played as after a red, or in its turn when no red is
+ * left. */
 static struct rules_state first_rules(const struct planner *planner)
 {
 	const struct plan_request *request = planner->request;
@@ -42,7 +43,8 @@ static struct rules_state first_rules(const struct planner *planner)
 	else
 		rules.on = ON_COLOUR;
 	for (int i = 0; i < request->ball_count && position.on == ON_CLEARANCE; i++)
-		if (request->ball[i].colour == colour && rules_ball_on(&position, request->ball, request->ball_count, i))
+		if (request->ball[i].colour == colour &&
+		    rules_ball_on(&position, request->ball, request->ball_count, i))
 			rules.on = ON_CLEARANCE;
 	return rules;
 }
@@ -211,7 +213,8 @@ bool outcome_is_cleared(const struct rules_outcome *outcome, int count)
 	return true;
 }
 
-void state_set(struct state *state, const struct planner *planner, const struct solution *shot, const struct rules_outcome *outcome)
+void state_set(struct state *state, const struct planner *planner, const struct solution *shot,
+	       const struct rules_outcome *outcome)
 {
 	*state = (struct state){
 		.rules = outcome->next,
@@ -233,7 +236,8 @@ static void merge_played(struct planner *planner, const struct slot *slot, const
 	bool last = shots == depth || outcome_is_cleared(&played->outcome, planner->ball_count);
 	struct solution solution = solution_make(planner, slot->node.state, &played->record);
 	struct solutions *list = &planner->solutions[last ? depth - 1 : shots - 1];
-	if (solutions_add(list, &solution) && list == best_solutions(planner) && solutions_at(list, 0)->cost == solution.cost)
+	if (solutions_add(list, &solution) && list == best_solutions(planner) &&
+	    solutions_at(list, 0)->cost == solution.cost)
 		*improved = true;
 	if (last || solution.cost > cost_limit(planner))
 		return;
@@ -272,7 +276,8 @@ static int batch_size(struct planner *planner)
 
 bool node_is_spare(const struct planner *planner, const struct node *node)
 {
-	return node->aim != 0 && node->chain_count > 0 && (planner->state[node->state].landed[node->chain[0]] >> node->pocket & 1);
+	return node->aim != 0 && node->chain_count > 0 &&
+	       (planner->state[node->state].landed[node->chain[0]] >> node->pocket & 1);
 }
 
 bool search_step(struct planner *planner, bool *improved)

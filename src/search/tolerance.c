@@ -12,7 +12,7 @@ struct trial {
 	struct workspace *work;
 	struct record record;
 	struct shot exact;
-	bool speed;	/* false: the angle is off */
+	bool speed; /* false: the angle is off */
 };
 
 static bool still_falls(struct trial *trial, double off)
@@ -60,10 +60,12 @@ static double within(double below, double above, double sigma)
 	return (erf(above / (sigma * M_SQRT2)) + erf(below / (sigma * M_SQRT2))) / 2;
 }
 
-void tolerance_find(const struct planner *planner, const struct state *state, struct record *record, struct workspace *work)
+void tolerance_find(const struct planner *planner, const struct state *state, struct record *record,
+		    struct workspace *work)
 {
 	const struct cost_profile *profile = &planner->def.profile;
-	struct trial trial = {.planner = planner, .state = state, .work = work, .record = *record, .exact = record->shot};
+	struct trial trial = {
+		.planner = planner, .state = state, .work = work, .record = *record, .exact = record->shot};
 	if (record->target < 0)
 		return;
 	double left = reach(&trial, 1, 0.0005, 0.1), right = reach(&trial, -1, 0.0005, 0.1);
