@@ -233,6 +233,44 @@ START_TEST(cushions_lose_energy_and_send_the_ball_back)
 }
 END_TEST
 
+/* Every constant that table_finish() lets through, the ends of the ranges among them. */
+static double ends_or_between(struct random *r, double low, double high)
+{
+	switch (random_u64(r) % 8) {
+	case 0:
+		return low;
+	case 1:
+		return high;
+	default:
+		return random_in(r, low, high);
+	}
+}
+
+START_TEST(cushions_hold_for_any_allowed_constants)
+{
+	struct random r = random_begin("cushions_hold_for_any_allowed_constants");
+	int trials = _i ? TRIALS / 20 : TRIALS;
+	for (int i = 0; i < trials; i++) {
+		struct table t = random_table(&r);
+		t.material.mu_slide = ends_or_between(&r, 1e-4, 2);
+		t.material.e_cushion = ends_or_between(&r, 0, 1);
+		t.material.mu_cushion = ends_or_between(&r, 0, 2);
+		t.material.stronge_omega = ends_or_between(&r, 0, 4);
+		double nose = ends_or_between(&r, 0, 2 * t.ball_radius), size = pow(10, random_in(&r, -6, 0));
+		vec2 n = vec2_from_angle(random_in(&r, 0, 2 * M_PI));
+		struct ball before = random_arrival(&r, n), after;
+		before.vel = vec2_scale(before.vel, 4 * size);
+		for (int k = 0; k < 3; k++)
+			before.spin[k] *= 4 * size;
+		after = before;
+		CUSHION_LAWS[_i](&t, n, nose, &after);
+		ck_assert(ball_is_finite(&after));
+		ck_assert_double_le(energy(&t, &after), energy(&t, &before) * (1 + 1e-9));
+		ck_assert_double_ge(vec2_dot(n, after.vel), -1e-12 * vec2_norm(before.vel));
+	}
+}
+END_TEST
+
 START_TEST(cushions_do_not_care_about_turn_and_mirror)
 {
 	struct random r = random_begin("cushions_do_not_care_about_turn_and_mirror");
@@ -392,6 +430,7 @@ Suite *test_suite(void)
 	suite_add_tcase(suite, balls);
 	tcase_set_timeout(cushions, 120);
 	tcase_add_loop_test(cushions, cushions_lose_energy_and_send_the_ball_back, 0, 2);
+	tcase_add_loop_test(cushions, cushions_hold_for_any_allowed_constants, 0, 2);
 	tcase_add_loop_test(cushions, cushions_do_not_care_about_turn_and_mirror, 0, 2);
 	tcase_add_loop_test(cushions, cushions_without_friction_are_restitution, 0, 2);
 	tcase_add_loop_test(cushions, cushion_touched_along_is_left_alone, 0, 2);

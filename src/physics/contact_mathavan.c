@@ -333,29 +333,32 @@ static double impulse_left(const struct impact *im, double target, const double 
 	return speed > 0 ? 2 * left / speed : INFINITY;
 }
 
-/* Shares of the speed before. Error estimate allowed a step: the result is good to about ten times less. A slip that
- * counts as none. Reached only where friction wedges the ball in for good: STEPS_MAX. */
-static const double TOLERANCE = 1e-6, REST_SLIP = 1e-5;
+/* Shares of the speed before: error estimate allowed a step; a slip that counts as none; an impulse no impact needs. */
+static const double TOLERANCE = 1e-6, REST_SLIP = 1e-5, IMPULSE_MAX = 20;
 enum { STEPS_MAX = 2000 };
 
-/* Integrates to the end of a phase; scale: speed before, m/s. */
-static void integrate(struct impact *im, double target, double scale)
+/* Integrates to the end of a phase; scale: speed before, m/s. False: friction wedges the ball in, the phase has no end.
+ */
+static bool integrate(struct impact *im, double target, double scale)
 {
-	double h = scale;
-	for (int n = 0; n < STEPS_MAX; n++) {
+	double h = scale, spent = 0;
+	for (int n = 0; n < STEPS_MAX && spent <= IMPULSE_MAX * scale; n++) {
 		choose_modes(im);
 		double rates[DIM], z[DIM], j[SLIPS][SLIPS];
 		derivative(im, im->z, rates);
 		double left = impulse_left(im, target, rates);
 		if (left <= 1e-9 * scale)
-			return;
+			return true;
 		jacobian(im, j);
 		h = fmin(fmin(h, slip_limit(im, rates)), left);
 		double error = step(im, h, rates, j, z);
-		for (int i = 0; i < DIM && error <= TOLERANCE * scale; i++)
+		bool good = error <= TOLERANCE * scale;
+		spent += good ? h : 0;
+		for (int i = 0; i < DIM && good; i++)
 			im->z[i] = z[i];
 		h *= fmin(5, fmax(0.2, 0.85 * sqrt(sqrt(TOLERANCE * scale / fmax(error, 1e-300)))));
 	}
+	return false;
 }
 
 void contact_cushion_mathavan(const struct table *table, vec2 normal, double nose_height, struct ball *ball)
@@ -379,10 +382,14 @@ void contact_cushion_mathavan(const struct table *table, vec2 normal, double nos
 			    .rest_slip = REST_SLIP * scale,
 			    .z = {vx + wy * s - wz * c, wx - vy * s, vx - wy, vy + wx, 0}};
 	double first[2] = {im.z[I1], im.z[C1]};
-	integrate(&im, NAN, scale);
-	integrate(&im, (1 - m->e_cushion * m->e_cushion) * im.z[WORK], scale);
+	bool ends = integrate(&im, NAN, scale);
+	ends = ends && integrate(&im, (1 - m->e_cushion * m->e_cushion) * im.z[WORK], scale);
+	if (!ends) {
+		ball->vel = vec2_madd(ball->vel, -vy, into);
+		return;
+	}
 
-	/* Impulses along x from the changes of the slips along x; a ball that is wedged in stays at the cushion. */
+	/* Impulses along x from the changes of the slips along x. */
 	double coupling = 1 - 2.5 * s, det = 3.5 * 3.5 - coupling * coupling;
 	double d1 = im.z[I1] - first[0], d2 = im.z[C1] - first[1];
 	double nose = (3.5 * d1 - coupling * d2) / det, cloth = (3.5 * d2 - coupling * d1) / det;

@@ -26,10 +26,11 @@ void contact_ball_rub(const struct table *table, vec2 impulse, struct ball *a, s
  * approaches. */
 void contact_cushion_stronge(const struct table *table, vec2 normal, double nose_height, struct ball *ball);
 
-/* Impact on a cushion nose at nose_height (m, 0 to 2 r), pressing the ball on the cloth (Mathavan, Jackson, Parkin
- * 2010): normal impulse integrated with friction at nose (mu_cushion) and cloth (mu_slide), restitution e_cushion of
- * the work done at the nose. Sticking at either contact is part of the law and handled as a mode of its own. The
- * integration leaves an error below 1e-4 of the speed before (surface speed of the spin included). Precondition: the
+/* Impact on a cushion nose at nose_height (m, 0 to 2 r; 0.1 r to 1.9 r count), pressing the ball on the cloth
+ * (Mathavan, Jackson, Parkin 2010): normal impulse integrated with friction at nose (mu_cushion) and cloth (mu_slide),
+ * restitution e_cushion of the work done at the nose. Sticking at either contact is part of the law and handled as a
+ * mode of its own. The integration leaves an error below 1e-4 of the speed before (surface speed of the spin included).
+ * With friction so high that the ball is wedged between nose and cloth it just stops at the cushion. Precondition: the
  * ball approaches. */
 void contact_cushion_mathavan(const struct table *table, vec2 normal, double nose_height, struct ball *ball);
 

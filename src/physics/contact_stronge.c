@@ -116,7 +116,8 @@ void contact_cushion_stronge(const struct table *table, vec2 normal, double nose
 		along = impulse * slip_t / slip;
 		up = impulse * slip_u / slip;
 	}
-	ball->vel = vec2_madd(ball->vel, cosine * normal_impulse + sine * up, normal);
+	/* A steep nose may leave some of the approach: the rail takes that. */
+	ball->vel = vec2_madd(ball->vel, fmax(cosine * normal_impulse + sine * up, -vn), normal);
 	ball->vel = vec2_madd(ball->vel, along, t);
 	double turn = 2.5 / r;
 	vec2 spin = vec2_madd(vec2_scale(t, turn * up), -turn * sine * along, normal);
