@@ -143,7 +143,8 @@ $(BUILD)/lcmtypes/billiard_%.c: $(BUILD)/lcmtypes/.stamp ;
 $(BUILD)/lcmtypes/%.o: $(BUILD)/lcmtypes/%.c
 	$(CC) -std=gnu17 $(BASE) -w $(APP_CFLAGS) -c $< -o $@
 $(APP_O) $(patsubst %,$(BUILD)/src/app/main_%.o,$(PROGRAMS)) $(TEST_SHARED_O) \
-	$(patsubst %,$(BUILD)/tests/test_%.o,$(TESTS)) $(patsubst %,$(BUILD)/bench/bench_%.o,$(BENCHES)): | $(BUILD)/lcmtypes/.stamp
+	$(patsubst %,$(BUILD)/tests/test_%.o,$(TESTS)) $(patsubst %,$(BUILD)/bench/bench_%.o,$(BENCHES)) \
+	$(patsubst %,$(BUILD)/fuzz/fuzz_%.o,$(FUZZERS)): | $(BUILD)/lcmtypes/.stamp
 
 link = $(CXX) $(BASE) $(LDFLAGS) -Wl,--as-needed -o $@ $(filter %.o,$^) -Wl,--start-group $(filter %.a,$^) -Wl,--end-group
 $(BUILD)/tests/test_%: $(BUILD)/tests/test_%.o $(TEST_SHARED_O) $(ARCHIVES)
