@@ -76,6 +76,10 @@ int marker_finder_create(struct marker_finder **out, int dictionary_count, int d
 {
 	*out = nullptr;
 	marker_finder *f = nullptr;
+	/* OpenCV searches for ever where there are fewer different markers than wanted. */
+	if (dictionary_bits < 3 || dictionary_bits > 7 || dictionary_count < 1 || dictionary_count > 50)
+		return vision_fail(-EINVAL, err, err_size, "dictionary of %d markers of %d bits, allowed 1..50 and 3..7",
+				   dictionary_count, dictionary_bits);
 	try {
 		f = new marker_finder;
 		f->dictionary = cv::aruco::generateCustomDictionary(dictionary_count, dictionary_bits);

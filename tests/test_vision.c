@@ -1,0 +1,338 @@
+/* The whole of vision on pictures with known truth: the virtual camera's. */
+#include "vision/vision.h"
+
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "app/colour_file.h"
+#include "app/config.h"
+#include "app/table_camera.h"
+#include "vision_scene.h"
+
+static const double mm = 1e-3;
+
+struct rig {
+	struct config config;
+	struct colour_model colours;
+	struct table_camera *camera;
+	struct vision *vision;
+	struct image_buffer image;
+	struct vision_result result;
+	struct ball ball[BALL_MAX];
+	int count;
+};
+
+static struct rig *rig;
+
+static void setup(void)
+{
+	char err[640];
+	rig = calloc(1, sizeof(*rig));
+	ck_assert_msg(config_load(&rig->config, "config/thesis-table.conf", err, sizeof(err)) == 0, "%s", err);
+	ck_assert_msg(colour_file_read(rig->config.colours, &rig->colours, err, sizeof(err)) == 0, "%s", err);
+	struct vision_def def = config_vision_def(&rig->config, &rig->colours);
+	ck_assert_msg(vision_create(&rig->vision, &def, err, sizeof(err)) == 0, "%s", err);
+	ck_assert_msg(table_camera_create(&rig->camera, &rig->config, err, sizeof(err)) == 0, "%s", err);
+	ck_assert_int_eq(image_buffer_reserve(&rig->image, rig->config.camera.width, rig->config.camera.height), 0);
+}
+
+static void teardown(void)
+{
+	vision_destroy(rig->vision);
+	table_camera_destroy(rig->camera);
+	image_buffer_finish(&rig->image);
+	free(rig);
+}
+
+static bool is_free(vec2 p)
+{
+	double d = 2 * rig->config.table.ball_radius;
+	for (int i = 0; i < rig->count; i++)
+		if (vec2_dist(rig->ball[i].pos, p) < d + 0.1 * mm)
+			return false;
+	for (int i = 0; i < rig->config.table.pocket_count; i++)
+		if (vec2_dist(rig->config.table.pocket[i].centre, p) < 1.2 * rig->config.table.pocket[i].radius)
+			return false;
+	return true;
+}
+
+static void scatter(struct random *r, int count)
+{
+	const struct table *t = &rig->config.table;
+	double hx = t->length / 2 - t->ball_radius, hy = t->width / 2 - t->ball_radius;
+	for (rig->count = 0; rig->count < count;) {
+		vec2 p = {random_in(r, -hx, hx), random_in(r, -hy, hy)};
+		int n = rig->count;
+		if (is_free(p))
+			rig->ball[rig->count++] = ball_at(n == 0 ? COLOUR_WHITE : n < 7 ? (enum ball_colour)(n + 1) : COLOUR_RED, p);
+	}
+}
+
+static void rack(void)
+{
+	double d = 2 * rig->config.table.ball_radius + 0.1 * mm;
+	rig->count = 0;
+	for (int row = 0; row < 5; row++)
+		for (int i = 0; i <= row; i++)
+			rig->ball[rig->count++] = ball_at(COLOUR_RED, (vec2){0.4 + row * d * 0.8660255, (i - row / 2.0) * d});
+	rig->ball[rig->count++] = ball_at(COLOUR_WHITE, (vec2){-0.6, 0.1});
+}
+
+static void detect(uint64_t frame)
+{
+	char err[256];
+	table_camera_render(rig->camera, rig->ball, rig->count, frame, &rig->image.image);
+	ck_assert_msg(vision_detect(rig->vision, &rig->image.image, &rig->result, err, sizeof(err)) == 0, "%s", err);
+}
+
+/* Every ball found once with its colour, nothing else. Returns the largest error, m. */
+static double check_found(void)
+{
+	double worst = 0;
+	ck_assert_msg(rig->result.calibration == CALIBRATION_FRESH, "%s", rig->result.reason);
+	ck_assert_int_eq(rig->result.ball_count, rig->count);
+	for (int i = 0; i < rig->count; i++) {
+		int best = 0;
+		for (int k = 1; k < rig->result.ball_count; k++)
+			if (vec2_dist(rig->result.ball[k].pos, rig->ball[i].pos) < vec2_dist(rig->result.ball[best].pos, rig->ball[i].pos))
+				best = k;
+		ck_assert_int_eq(rig->result.ball[best].colour, rig->ball[i].colour);
+		worst = fmax(worst, vec2_dist(rig->result.ball[best].pos, rig->ball[i].pos));
+	}
+	return worst;
+}
+
+START_TEST(test_scattered_balls)
+{
+	struct random r = random_begin("vision_scattered");
+	for (int i = 0; i < 6; i++) {
+		scatter(&r, 22);
+		detect((uint64_t)i);
+		ck_assert_double_lt(check_found(), 1.2 * mm);
+		ck_assert(!rig->result.occluded);
+	}
+}
+END_TEST
+
+START_TEST(test_rack)
+{
+	rack();
+	detect(1);
+	ck_assert_double_lt(check_found(), 1.5 * mm);
+	/* Solid balls: no two overlap. */
+	for (int i = 0; i < rig->result.ball_count; i++)
+		for (int k = 0; k < i; k++)
+			ck_assert_double_gt(vec2_dist(rig->result.ball[i].pos, rig->result.ball[k].pos),
+					    2 * rig->config.table.ball_radius - 0.1 * mm);
+}
+END_TEST
+
+START_TEST(test_same_frame_same_bits)
+{
+	struct random r = random_begin("vision_repeat");
+	struct vision_result first;
+	scatter(&r, 15);
+	detect(3);
+	first = rig->result;
+	detect(3);
+	for (int i = 0; i < first.ball_count; i++)
+		ck_assert(first.ball[i].pos.x == rig->result.ball[i].pos.x && first.ball[i].pos.y == rig->result.ball[i].pos.y);
+}
+END_TEST
+
+START_TEST(test_empty_table_has_no_balls)
+{
+	rig->count = 0;
+	detect(1);
+	ck_assert_int_eq(rig->result.ball_count, 0);
+	ck_assert_int_eq(rig->result.calibration, CALIBRATION_FRESH);
+}
+END_TEST
+
+static void fill(int width, int height, int grey)
+{
+	ck_assert_int_eq(image_buffer_reserve(&rig->image, width, height), 0);
+	memset(rig->image.image.data, grey, (size_t)rig->image.image.stride * (size_t)height);
+}
+
+START_TEST(test_frames_that_show_nothing)
+{
+	static const int grey[] = {0, 128, 255};
+	char err[256];
+	for (int i = 0; i < 3; i++) {
+		fill(1280, 720, grey[i]);
+		ck_assert_int_eq(vision_detect(rig->vision, &rig->image.image, &rig->result, err, sizeof(err)), 0);
+		ck_assert_int_eq(rig->result.calibration, CALIBRATION_NONE);
+		ck_assert_int_eq(rig->result.ball_count, 0);
+		ck_assert(strstr(rig->result.reason, "markers") != NULL);
+		ck_assert_int_eq(vision_track(rig->vision, &rig->image.image, i, &rig->result, err, sizeof(err)), 0);
+		ck_assert_int_eq(rig->result.ball_count, 0);
+	}
+}
+END_TEST
+
+START_TEST(test_wrong_sizes_are_refused)
+{
+	static const int size[][2] = {{1, 1}, {640, 480}, {1280, 1024}, {720, 1280}, {8000, 720}};
+	char err[256];
+	for (int i = 0; i < 5; i++) {
+		fill(size[i][0], size[i][1], 100);
+		ck_assert_int_lt(vision_detect(rig->vision, &rig->image.image, &rig->result, err, sizeof(err)), 0);
+		ck_assert(strstr(err, "px") != NULL);
+	}
+	/* Same shape, other sizes: scaled. */
+	fill(3840, 2160, 100);
+	ck_assert_int_eq(vision_detect(rig->vision, &rig->image.image, &rig->result, err, sizeof(err)), 0);
+	fill(320, 180, 100);
+	ck_assert_int_eq(vision_detect(rig->vision, &rig->image.image, &rig->result, err, sizeof(err)), 0);
+}
+END_TEST
+
+START_TEST(test_bad_definitions_are_refused)
+{
+	char err[256];
+	struct vision *vision;
+	struct vision_def def = config_vision_def(&rig->config, &rig->colours), bad = def;
+	bad.markers.count = 2;
+	ck_assert_int_lt(vision_create(&vision, &bad, err, sizeof(err)), 0);
+	ck_assert_ptr_null(vision);
+	bad = def;
+	bad.intrinsics.fx = -1;
+	ck_assert_int_lt(vision_create(&vision, &bad, err, sizeof(err)), 0);
+	bad = def;
+	bad.table = NULL;
+	ck_assert_int_lt(vision_create(&vision, &bad, err, sizeof(err)), 0);
+	bad = def;
+	bad.markers.dictionary_bits = 0;
+	ck_assert_int_lt(vision_create(&vision, &bad, err, sizeof(err)), 0);
+	vision_destroy(NULL);
+}
+END_TEST
+
+/* ---- streams --------------------------------------------------------------------------------------------------------- */
+
+static void track(int frame, double time)
+{
+	char err[256];
+	table_camera_render(rig->camera, rig->ball, rig->count, (uint64_t)frame, &rig->image.image);
+	ck_assert_msg(vision_track(rig->vision, &rig->image.image, time, &rig->result, err, sizeof(err)) == 0, "%s", err);
+}
+
+static const struct vision_ball *found_at(vec2 pos, double reach)
+{
+	for (int i = 0; i < rig->result.ball_count; i++)
+		if (vec2_dist(rig->result.ball[i].pos, pos) < reach)
+			return &rig->result.ball[i];
+	return NULL;
+}
+
+START_TEST(test_identity_velocity_and_rest)
+{
+	struct random r = random_begin("vision_track");
+	double dt = 1 / 30.0;
+	scatter(&r, 6);
+	rig->ball[0].pos = (vec2){-0.7, 0.0};
+	for (int i = 1; i < 6; i++)
+		rig->ball[i].pos = (vec2){-0.6 + 0.25 * i, i % 2 ? 0.25 : -0.25};
+	int frame = 0;
+	for (; frame < 8; frame++)
+		track(frame, frame * dt);
+	ck_assert_int_eq(rig->result.ball_count, 6);
+	ck_assert_ptr_nonnull(found_at(rig->ball[0].pos, 1 * mm));
+	int id = found_at(rig->ball[0].pos, 1 * mm)->track;
+	vec2 rest[6];
+	for (int i = 1; i < 6; i++)
+		rest[i] = found_at(rig->ball[i].pos, 1 * mm)->pos;
+	for (int k = 0; k < 12; k++, frame++) {
+		rig->ball[0].pos.x += 0.9 * dt;
+		track(frame, frame * dt);
+		const struct vision_ball *b = found_at(rig->ball[0].pos, 2 * mm);
+		ck_assert_msg(b != NULL, "frame %d: the rolling ball is lost", k);
+		ck_assert_int_eq(b->track, id);
+		if (k > 3) {
+			ck_assert_double_eq_tol(b->vel.x, 0.9, 0.06);
+			ck_assert_double_eq_tol(b->vel.y, 0, 0.06);
+		}
+		/* What rests does not move with it. */
+		for (int i = 1; i < 6; i++) {
+			ck_assert_ptr_nonnull(found_at(rest[i], 0.15 * mm));
+			ck_assert(found_at(rest[i], 0.15 * mm)->vel.x == 0);
+		}
+	}
+	for (int k = 0; k < 8; k++, frame++)
+		track(frame, frame * dt);
+	const struct vision_ball *b = found_at(rig->ball[0].pos, 1.2 * mm);
+	ck_assert_ptr_nonnull(b);
+	ck_assert_int_eq(b->track, id);
+	ck_assert(b->vel.x == 0 && b->vel.y == 0);
+}
+END_TEST
+
+START_TEST(test_balls_come_and_go)
+{
+	struct random r = random_begin("vision_come_and_go");
+	scatter(&r, 5);
+	int frame = 0;
+	for (; frame < 5; frame++)
+		track(frame, frame * 0.033);
+	ck_assert_int_eq(rig->result.ball_count, 5);
+	rig->count = 4;
+	for (; frame < 12; frame++)
+		track(frame, frame * 0.033);
+	ck_assert_int_eq(rig->result.ball_count, 4);
+	rig->count = 5;
+	for (; frame < 20; frame++)
+		track(frame, frame * 0.033);
+	ck_assert_int_eq(rig->result.ball_count, 5);
+	/* A time that goes back begins anew. */
+	track(frame, 0);
+	ck_assert_int_eq(rig->result.ball_count, 5);
+	ck_assert_int_eq(rig->result.ball[0].age, 1);
+}
+END_TEST
+
+START_TEST(test_pose_is_kept_for_its_time)
+{
+	struct random r = random_begin("vision_pose_kept");
+	char err[256];
+	scatter(&r, 4);
+	track(0, 0);
+	table_camera_render(rig->camera, rig->ball, rig->count, 1, &rig->image.image);
+	/* Markers covered: the rails turn black. */
+	for (int y = 0; y < 720; y++)
+		if (y < 62 || y > 655)
+			memset(rig->image.image.data + y * rig->image.image.stride, 0, 3 * 1280);
+	ck_assert_int_eq(vision_track(rig->vision, &rig->image.image, 5, &rig->result, err, sizeof(err)), 0);
+	ck_assert_int_eq(rig->result.calibration, CALIBRATION_KEPT);
+	ck_assert_double_eq_tol(rig->result.pose_age, 5, 1e-9);
+	ck_assert_int_eq(rig->result.ball_count, 4);
+	ck_assert_int_eq(vision_track(rig->vision, &rig->image.image, 200, &rig->result, err, sizeof(err)), 0);
+	ck_assert_int_eq(rig->result.calibration, CALIBRATION_NONE);
+	ck_assert_int_eq(rig->result.ball_count, 0);
+}
+END_TEST
+
+Suite *test_suite(void)
+{
+	Suite *suite = suite_create("vision");
+	TCase *tc = tcase_create("frames");
+	tcase_add_checked_fixture(tc, setup, teardown);
+	tcase_add_test(tc, test_scattered_balls);
+	tcase_add_test(tc, test_rack);
+	tcase_add_test(tc, test_same_frame_same_bits);
+	tcase_add_test(tc, test_empty_table_has_no_balls);
+	tcase_add_test(tc, test_frames_that_show_nothing);
+	tcase_add_test(tc, test_wrong_sizes_are_refused);
+	tcase_add_test(tc, test_bad_definitions_are_refused);
+	tcase_set_timeout(tc, 120);
+	suite_add_tcase(suite, tc);
+	tc = tcase_create("streams");
+	tcase_add_checked_fixture(tc, setup, teardown);
+	tcase_add_test(tc, test_identity_velocity_and_rest);
+	tcase_add_test(tc, test_balls_come_and_go);
+	tcase_add_test(tc, test_pose_is_kept_for_its_time);
+	tcase_set_timeout(tc, 120);
+	suite_add_tcase(suite, tc);
+	return suite;
+}
