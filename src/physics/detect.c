@@ -7,6 +7,8 @@
 static const double ROUNDING = 4e-16;
 /* Balls closer than this share of their squared distance touch: rounding of the positions and of a contact's time. */
 static const double TOUCH = 1e-12;
+/* Boxes around paths are widened by this: far above rounding. */
+static const double BOX_SLACK = 1e-9; /* m */
 
 struct motion detect_motion(const struct table *table, const struct ball *ball, double now)
 {
@@ -160,11 +162,31 @@ struct path {
 	double speed;
 	bool straight;
 	struct solve_count *count;
+	struct box box; /* around the path up to the horizon or a later time */
 	double horizon; /* s, to the best event so far */
 	double excess;	/* m, by which the best event's contact point lies beyond its cushion */
 	struct event best;
 	double begin;
 };
+
+static void find_box(struct path *path)
+{
+	extent(path->p.x, path->v.x, path->a.x, path->horizon, &path->box.low.x, &path->box.high.x);
+	extent(path->p.y, path->v.y, path->a.y, path->horizon, &path->box.low.y, &path->box.high.y);
+}
+
+/* True when no point of the box is within distance of the line through point, on the side of normal. */
+static bool box_beyond_line(const struct box *box, vec2 point, vec2 normal, double distance)
+{
+	vec2 nearest = {normal.x > 0 ? box->low.x : box->high.x, normal.y > 0 ? box->low.y : box->high.y};
+	return vec2_dot(normal, vec2_sub(nearest, point)) > distance;
+}
+
+static bool box_beyond_disc(const struct box *box, vec2 centre, double radius)
+{
+	return box->low.x > centre.x + radius || box->high.x < centre.x - radius || box->low.y > centre.y + radius ||
+	       box->high.y < centre.y - radius;
+}
 
 static void offer(struct path *path, double t, enum event_kind kind, int other, double excess)
 {
@@ -225,6 +247,10 @@ static void try_cushion(struct path *path, int index)
 	const struct cushion *c = &path->table->cushion[index];
 	vec2 n = detect_cushion_normal(c, path->p);
 	double radius = path->table->ball_radius;
+	if (box_beyond_line(&path->box, c->a, n, radius + BOX_SLACK)) {
+		path->count->culled++;
+		return;
+	}
 	double d[3] = {vec2_dot(n, vec2_sub(path->p, c->a)) - radius, vec2_dot(n, path->v), 0.5 * vec2_dot(n, path->a)};
 	if (d[0] > 0 && d[1] >= 0 && d[2] >= 0)
 		return;
@@ -251,6 +277,10 @@ static void try_cushion(struct path *path, int index)
 
 static double try_disc(struct path *path, vec2 centre, double distance)
 {
+	if (box_beyond_disc(&path->box, centre, distance + BOX_SLACK)) {
+		path->count->culled++;
+		return INFINITY;
+	}
 	return disc_entry(vec2_sub(path->p, centre), path->v, path->a, distance, path->horizon, path->speed,
 			  path->straight, path->count);
 }
@@ -306,15 +336,17 @@ struct event detect_own(const struct table *table, const struct model *model, co
 	};
 	if (ball->phase != BALL_ROLLING && ball->phase != BALL_SLIDING)
 		return path.best;
-	struct box box;
-	extent(path.p.x, path.v.x, path.a.x, path.horizon, &box.low.x, &box.high.x);
-	extent(path.p.y, path.v.y, path.a.y, path.horizon, &box.low.y, &box.high.y);
+	find_box(&path);
 	for (int i = 0; i < table->cushion_count; i++) {
 		if (table->cushion[i].main_rail)
 			try_cushion(&path, i);
 	}
-	for (int i = 0; model->pocket != POCKET_MODEL_NONE && i < table->region_count; i++) {
-		if (boxes_meet(&box, &table->region[i]))
+	if (model->pocket == POCKET_MODEL_NONE)
+		return path.best;
+	if (path.best.kind == EVENT_CUSHION)
+		find_box(&path); /* up to the rail only */
+	for (int i = 0; i < table->region_count; i++) {
+		if (boxes_meet(&path.box, &table->region[i]))
 			try_region(&path, &table->region[i]);
 	}
 	return path.best;
