@@ -211,6 +211,7 @@ static struct planner_def define(const struct config *config)
 	double longest = def.sync_period / (def.workers + 1);
 	def.sync_window = planner->sync_window > 0 && planner->sync_window < longest ? planner->sync_window : longest;
 	def.progress_plans = 1;	/* each costs simulations for its keyframes: all of them come with the final answer */
+	def.result_plans = PLAN_MESSAGE_ENTRIES;
 	return def;
 }
 

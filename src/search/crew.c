@@ -3,6 +3,7 @@
 #include <assert.h>
 #include <errno.h>
 #include <stdlib.h>
+#include <string.h>
 
 static_assert(BATCH - PLAN_WORKERS_MAX + 0 >= 0, "every worker has a slot of its own");
 static_assert(FOUND_MAX - SPEEDS_MAX + 0 >= 0, "the results of one node fit");
@@ -124,6 +125,14 @@ bool crew_pop(struct crew *crew, struct frontier *open, struct node *out)
 
 /* ---- results -------------------------------------------------------------------------------------------------------- */
 
+static void note_limit(struct crew *crew)
+{
+	struct planner *planner = crew->planner;
+	struct solutions *full = &planner->solutions[planner->request->depth - 1];
+	double limit = full->count == full->limit ? solutions_at(full, full->count - 1)->cost : INFINITY;
+	atomic_store_explicit(&crew->limit, limit, memory_order_relaxed);
+}
+
 void crew_report(struct crew *crew, struct worker *worker)
 {
 	struct planner *planner = crew->planner;
@@ -137,9 +146,7 @@ void crew_report(struct crew *crew, struct worker *worker)
 		atomic_store_explicit(&planner->shown.depth, worker->found_shots[i], memory_order_relaxed);
 	}
 	worker->found_count = 0;
-	struct solutions *full = &planner->solutions[planner->request->depth - 1];
-	if (full->count == full->limit)
-		atomic_store_explicit(&crew->limit, solutions_at(full, full->count - 1)->cost, memory_order_relaxed);
+	note_limit(crew);
 	if (crew->improved)
 		pthread_cond_signal(&crew->news);
 }
@@ -197,20 +204,6 @@ static void take_in(struct crew *crew, struct worker *worker, const struct slot 
 		open_state(crew, worker, &solution, &played->outcome);
 }
 
-/* Nothing found for a while: the manager is to propose a simple contact meanwhile, as batches do. */
-static void ask_for_safety(struct crew *crew, const struct worker *worker)
-{
-	uint64_t done = atomic_load_explicit(&worker->count[COUNT_NODES], memory_order_relaxed) - worker->before[COUNT_NODES];
-	if (done < SAFETY_STEP * BATCH || atomic_load_explicit(&crew->best, memory_order_relaxed) < INFINITY)
-		return;
-	if (atomic_load_explicit(&crew->safety_asked, memory_order_relaxed) || atomic_exchange(&crew->safety_asked, true))
-		return;
-	pthread_mutex_lock(&crew->lock);
-	crew->safety_due = true;
-	pthread_cond_signal(&crew->news);
-	pthread_mutex_unlock(&crew->lock);
-}
-
 static void take_in_all(struct crew *crew, struct worker *worker, struct slot *slot)
 {
 	count_up(&worker->count[COUNT_NODES], slot->expansions);
@@ -231,7 +224,6 @@ static void take_in_all(struct crew *crew, struct worker *worker, struct slot *s
 		crew->share->give(crew, worker, slot->child, wanted);
 	if (must_report(crew, worker))
 		report_now(crew, worker);
-	ask_for_safety(crew, worker);
 }
 
 static void work(void *context, int item, int thread)
@@ -257,19 +249,23 @@ static void work(void *context, int item, int thread)
 
 /* ---- the manager ---------------------------------------------------------------------------------------------------- */
 
+/* Goes on from where the first slice has come. */
 static void begin(struct crew *crew)
 {
-	atomic_store(&crew->limit, INFINITY);
-	atomic_store(&crew->best, INFINITY);
-	atomic_store(&crew->state_count, crew->planner->state_count);
+	struct planner *planner = crew->planner;
+	struct solutions *list = best_solutions(planner);
+	bool any = list && list != &planner->solutions[SAFETY_LIST];
+	atomic_store(&crew->best, any ? solutions_at(list, 0)->cost : INFINITY);
+	note_limit(crew);
+	memcpy(crew->slice, (uint64_t[]){planner->nodes, planner->sims, planner->tried, planner->landed, planner->refined},
+	       sizeof crew->slice);
+	atomic_store(&crew->state_count, planner->state_count);
 	atomic_store(&crew->dry, 0);
 	atomic_store(&crew->over, false);
 	atomic_store(&crew->overflow, false);
-	atomic_store(&crew->safety_asked, false);
-	crew->improved = crew->serve_due = crew->safety_due = crew->cut = false;
-	crew->safety_sims = 0;
+	crew->improved = crew->serve_due = crew->cut = false;
 	crew->finished = 0;
-	crew->start = now(crew->planner);
+	crew->start = now(planner);
 	for (int i = 0; i < crew->worker_count; i++) {
 		struct worker *worker = &crew->worker[i];
 		frontier_clear(&worker->open);
@@ -296,23 +292,11 @@ static void sum_up(struct crew *crew)
 {
 	struct planner *planner = crew->planner;
 	planner->cut = crew->cut;
-	planner->nodes = sum(crew, COUNT_NODES);
-	planner->sims = sum(crew, COUNT_SIMS) + crew->safety_sims;
-	planner->tried = sum(crew, COUNT_TRIED);
-	planner->landed = sum(crew, COUNT_LANDED);
-	planner->refined = sum(crew, COUNT_REFINED);
-}
-
-/* Under the lock: it is a simulation or two. */
-static void propose_contact(struct crew *crew)
-{
-	struct planner *planner = crew->planner;
-	crew->safety_due = false;
-	if (best_solutions(planner))
-		return;
-	planner->sims = 0;
-	crew->improved = safety_find(planner, false);
-	crew->safety_sims += planner->sims;
+	planner->nodes = crew->slice[COUNT_NODES] + sum(crew, COUNT_NODES);
+	planner->sims = crew->slice[COUNT_SIMS] + sum(crew, COUNT_SIMS);
+	planner->tried = crew->slice[COUNT_TRIED] + sum(crew, COUNT_TRIED);
+	planner->landed = crew->slice[COUNT_LANDED] + sum(crew, COUNT_LANDED);
+	planner->refined = crew->slice[COUNT_REFINED] + sum(crew, COUNT_REFINED);
 }
 
 void crew_run(struct crew *crew, plan_progress_fn *progress, void *context, struct plan_result *result)
@@ -330,8 +314,6 @@ void crew_run(struct crew *crew, plan_progress_fn *progress, void *context, stru
 			pthread_mutex_unlock(&crew->lock);
 			progress(context, result);
 			pthread_mutex_lock(&crew->lock);
-		} else if (crew->safety_due) {
-			propose_contact(crew);
 		} else if (crew->serve_due) {
 			crew->serve_due = false;
 			crew->share->serve(crew);

@@ -57,12 +57,12 @@ struct crew {
 	_Atomic double best;		/* cost of the best one */
 	atomic_int state_count;
 	atomic_int dry;			/* workers that have nothing to do; written under lock */
-	atomic_bool over, overflow, safety_asked;
+	atomic_bool over, overflow;
 
 	pthread_mutex_t lock;		/* of all below, of the results in planner and, but for stealing, of planner->frontier */
 	pthread_cond_t work, news;	/* for workers; for the manager */
-	bool improved, serve_due, safety_due, cut;
-	uint64_t safety_sims;
+	bool improved, serve_due, cut;
+	uint64_t slice[COUNT_KINDS];	/* done before the crew began */
 	int finished;			/* workers that are done */
 
 	/* windows */

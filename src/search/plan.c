@@ -3,6 +3,7 @@
 
 #include <assert.h>
 #include <errno.h>
+#include <limits.h>
 #include <stdio.h>
 #include <stdlib.h>
 
@@ -133,11 +134,12 @@ void planner_export(struct planner *planner, int limit, struct plan_result *resu
 	result->status = result->plan_count > 0 ? PLAN_OK : PLAN_NONE;
 }
 
-static void run_batches(struct planner *planner, plan_progress_fn *progress, void *context, struct plan_result *result)
+/* At most limit of them. True when more are to be worked on. */
+static bool run_batches(struct planner *planner, int limit, plan_progress_fn *progress, void *context, struct plan_result *result)
 {
-	bool improved;
+	bool improved, more = true;
 	show_begin(planner);
-	while (search_step(planner, &improved)) {
+	for (int i = 0; i < limit && (more = search_step(planner, &improved)); i++) {
 		show_step(planner);
 		if (improved && progress) {
 			planner_export(planner, planner->def.progress_plans, result);
@@ -146,6 +148,7 @@ static void run_batches(struct planner *planner, plan_progress_fn *progress, voi
 	}
 	planner->overflow |= planner->frontier.overflow;
 	show_end(planner);
+	return more;
 }
 
 static void search(struct planner *planner, plan_progress_fn *progress, void *context, struct plan_result *result)
@@ -154,10 +157,10 @@ static void search(struct planner *planner, plan_progress_fn *progress, void *co
 	double share = planner->def.profile.rank_by_success ? 1 - RANKING_SHARE : 1;
 	planner->deadline = budget > 0 ? begin + share * budget : INFINITY;
 	search_begin(planner);
-	if (planner->crew && planner->request->budget.nodes == 0)
+	/* An easy question is answered before any worker is woken. */
+	bool crewed = planner->crew && planner->request->budget.nodes == 0;
+	if (run_batches(planner, crewed ? FIRST_SLICE : INT_MAX, progress, context, result) && crewed)
 		crew_run(planner->crew, progress, context, result);
-	else
-		run_batches(planner, progress, context, result);
 	struct solutions *list = best_solutions(planner);
 	if (!list || list == &planner->solutions[SAFETY_LIST])
 		safety_find(planner, true);
@@ -178,7 +181,7 @@ int planner_run(struct planner *planner, const struct plan_request *request, pla
 	atomic_store_explicit(&planner->cancel, false, memory_order_relaxed);
 	planner->request = request;
 	search(planner, progress, context, result);
-	planner_export(planner, 0, result);
+	planner_export(planner, search_is_cancelled(planner) ? planner->def.progress_plans : planner->def.result_plans, result);
 	planner->request = NULL;
 	if (!atomic_load_explicit(&planner->cancel, memory_order_relaxed))
 		return 0;

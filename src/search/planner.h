@@ -17,6 +17,7 @@ enum {
 	AIMS_MAX = 10, /* aims at a pocket: up to 9 points of it, and along a cushion */
 	ROOTS_MAX = POCKET_MAX * AIMS_MAX,
 	SAFETY_STEP = 2,	      /* after so many batches without a proposal a simple contact is proposed */
+	FIRST_SLICE = 4, /* batches that the caller works on alone, without waking anybody */
 	SAFETY_LIST = PLAN_SHOTS_MAX, /* place of the contact shot among the lists of solutions */
 	NO_STATE = -1
 };

@@ -295,7 +295,11 @@ bool search_step(struct planner *planner, bool *improved)
 		planner->slot[count].node = frontier_pop(&planner->frontier);
 		count += !node_is_spare(planner, &planner->slot[count].node);
 	}
-	pool_for(planner->pool, count, work_on, planner);
+	if (planner->batch_count < FIRST_SLICE)
+		for (int i = 0; i < count; i++)
+			work_on(planner, i, 0);
+	else
+		pool_for(planner->pool, count, work_on, planner);
 	for (int i = 0; i < count; i++)
 		merge(planner, &planner->slot[i], improved);
 	if (++planner->batch_count == SAFETY_STEP && !best_solutions(planner))
