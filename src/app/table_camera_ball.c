@@ -245,6 +245,18 @@ static void draw_ball(struct table_camera *camera, const struct sphere *sphere, 
 		}
 }
 
+/* Mean light of the cloth beside a ball: right below it there may be a line. */
+static void cloth_around(const struct table_scene *scene, vec2 pos, double radius, float light[3])
+{
+	for (int k = 0; k < 4; k++) {
+		vec2 beside = {pos.x + (k & 1 ? 1.5 : -1.5) * radius, pos.y + (k & 2 ? 1.5 : -1.5) * radius};
+		float rgb[3];
+		table_scene_colour(scene, beside, SURFACE_BED, rgb);
+		for (int c = 0; c < 3; c++)
+			light[c] += table_camera_linear(rgb[c]) / 4;
+	}
+}
+
 /* The balls that are seen, the farthest from the eye first. */
 static int sort_spheres(const struct table_camera *camera, const struct ball *ball, int count, struct vec3 eye,
 			struct sphere *out)
@@ -257,10 +269,9 @@ static int sort_spheres(const struct table_camera *camera, const struct ball *ba
 		struct sphere sphere = {.centre = {ball[i].pos.x, ball[i].pos.y, camera->table.ball_radius},
 					.radius = camera->table.ball_radius};
 		table_scene_light(&camera->scene, ball[i].pos, sphere.room);
-		table_scene_colour(&camera->scene, ball[i].pos, SURFACE_BED, sphere.cloth);
+		cloth_around(&camera->scene, ball[i].pos, sphere.radius, sphere.cloth);
 		for (int c = 0; c < 3; c++) {
 			sphere.albedo[c] = table_camera_linear(ALBEDO[ball[i].colour][c]);
-			sphere.cloth[c] = table_camera_linear(sphere.cloth[c]);
 			sphere.room[c] = powf(sphere.room[c], 2.2f);
 		}
 		struct vec3 to = sub(sphere.centre, eye);
