@@ -100,7 +100,7 @@ void scene_paint(const struct camera *camera, const struct table *table, const s
 		}
 }
 
-/* Share of a marker that is white at u, v in -1..1 of its black square; paper reaches to 1.3. */
+/* Share of a marker that is white at u, v in -1..1 of its black square; paper reaches to 1.45. */
 static int marker_white(const uint8_t *bits, int side, double u, double v)
 {
 	if (fabs(u) > 1 || fabs(v) > 1)
@@ -129,7 +129,7 @@ void scene_paint_markers(const struct camera *camera, const struct marker_layout
 					vec2 at, px = {x + (i % 4 + 0.5) / 4 - 0.5, y + (i / 4 + 0.5) / 4 - 0.5};
 					camera_unproject(camera, px, layout->height, &at);
 					double u = (at.x - layout->marker[m].centre.x) / half, v = -(at.y - layout->marker[m].centre.y) / half;
-					if (fabs(u) > 1.3 || fabs(v) > 1.3)
+					if (fabs(u) > 1.45 || fabs(v) > 1.45)
 						continue;
 					inside++;
 					white += marker_white(bits, side, u, v);

@@ -1,10 +1,12 @@
 #include "vision/marker_edges.h"
 
 #include <math.h>
+#include <stdlib.h>
 
 #include "physics/vec2.h"
 
-enum { EDGE_SAMPLES = 24, EDGE_SAMPLES_MIN = 14, PROFILE = 17, ROUNDS = 3 };
+enum { EDGE_SAMPLES = 24, EDGE_SAMPLES_MIN = 14, PROFILE = 17, ROUNDS = 3, BALANCE = 10 };
+static const double BALANCE_STEP = 0.25;	/* px */
 static const double ENDS = 0.12;		/* of a side, next to the corners, is not measured */
 static const double CONTRAST_MIN = 25;		/* levels between border and paper */
 static const double CORNER_MOVE_MAX = 6;	/* px; further off something else was measured */
@@ -30,11 +32,24 @@ static bool is_inside(const struct image *im, vec2 p)
 	return p.x >= 1 && p.y >= 1 && p.x < im->width - 2 && p.y < im->height - 2;
 }
 
+/* The place with as much grey missing on its white side as there is too much on its black side: right for every even blur, where the
+ * half way is off by up to a tenth of a pixel for a sharp edge between pixels. */
+static double balanced(const struct image *im, vec2 p, vec2 out, double half, double low, double high)
+{
+	double sum = 0;
+	for (int i = -BALANCE; i <= BALANCE; i++) {
+		double share = (grey_at(im, vec2_madd(p, half + i * BALANCE_STEP, out)) - low) / (high - low);
+		sum += fmin(fmax(share, 0), 1) * (abs(i) == BALANCE ? 0.5 : 1);
+	}
+	return half + BALANCE_STEP * (BALANCE - sum);
+}
+
 /* Where the grey along out crosses the middle between its ends; out points from the black border to the white paper. */
 static bool edge_at(const struct image *im, vec2 p, vec2 out, double reach, double *offset)
 {
 	double v[PROFILE], step = 2 * reach / (PROFILE - 1);
-	if (!is_inside(im, vec2_madd(p, reach, out)) || !is_inside(im, vec2_madd(p, -reach, out)))
+	double margin = reach + BALANCE * BALANCE_STEP;
+	if (!is_inside(im, vec2_madd(p, margin, out)) || !is_inside(im, vec2_madd(p, -margin, out)))
 		return false;
 	for (int i = 0; i < PROFILE; i++)
 		v[i] = grey_at(im, vec2_madd(p, i * step - reach, out));
@@ -47,8 +62,10 @@ static bool edge_at(const struct image *im, vec2 p, vec2 out, double reach, doub
 		if (v[i] < half && v[i + 1] >= half && fabs(at) < fabs(best))
 			best = at;
 	}
-	*offset = best;
-	return best < 1e8;
+	if (!(fabs(best) < reach))
+		return false;
+	*offset = balanced(im, p, out, best, low, high);
+	return true;
 }
 
 static bool counts(const struct line *line, vec2 p)
@@ -117,7 +134,7 @@ static bool refine_once(const struct image *frame, int cells, vec2 corner[4])
 		if (vec2_dot(out, vec2_sub(a, middle)) < 0)
 			out = vec2_scale(out, -1);
 		/* Not across the black border into the marker's bits. */
-		double reach = fmin(0.8 * vec2_norm(along) / cells, 4);
+		double reach = fmin(0.8 * vec2_norm(along) / cells, 3.5);
 		if (!measure_side(frame, a, b, out, reach, &side[k]))
 			return false;
 	}
