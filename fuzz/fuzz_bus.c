@@ -80,9 +80,10 @@ int LLVMFuzzerTestOneInput(const uint8_t *data, size_t size)
 	size_t full = type == &bus_image ? size + 6 : (size_t)type->encoded_size(message);
 	size_t used = whole || size + 6 > full ? full : size + 6;
 	uint8_t *bytes = calloc(1, used), head[64 + 8];
-	billiard_image_t no_image = {0};
+	uint8_t pixel = 0;
+	billiard_image_t small_image = {.size = 1, .data = &pixel};
 	if (type == &bus_image)
-		type->encode(head, 0, sizeof head, &no_image);
+		type->encode(head, 0, sizeof head, &small_image);
 	else
 		type->encode(bytes, 0, (int)used, message);
 	if (type == &bus_image)

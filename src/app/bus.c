@@ -272,6 +272,11 @@ out:
 	return r;
 }
 
+bool bus_utime_ok(int64_t utime)
+{
+	return utime >= 0 && utime <= (int64_t)1 << 53;
+}
+
 int bus_descriptor(struct bus *bus)
 {
 	return lcm_get_fileno(bus->lcm);

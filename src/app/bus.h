@@ -55,6 +55,9 @@ int bus_subscribe(struct bus *bus, const char *channel, const struct bus_type *t
 /* 0 or -EIO. A lost message is not an error. */
 int bus_publish(struct bus *bus, const char *channel, const struct bus_type *type, const void *message);
 
+/* False for a time (us since 1970) that no clock shows: before 1970 or after 2255. */
+bool bus_utime_ok(int64_t utime);
+
 /* For the event loop: readable when messages wait. */
 int bus_descriptor(struct bus *bus);
 /* Handles what waits, at most 1000 messages. 0, or -EIO when the bus is gone (the end of a replayed log). */

@@ -8,7 +8,6 @@
 
 static const double SETTLE_MAX = 0.006;		/* m a ball may be moved to take camera errors out of a layout */
 static const double NEW_LAYOUT = 0.003;		/* m a ball must lie elsewhere for a new proposal */
-static const int64_t UTIME_MAX = (int64_t)1 << 53;	/* us, the year 2255: a later frame is a malformed one */
 
 void controller_init(struct controller *c, const struct config *config)
 {
@@ -225,7 +224,7 @@ bool controller_state(struct controller *c, const billiard_table_state_t *state,
 {
 	struct layout layout;
 	/* A clock that was set back, or another log: begin anew after two seconds' worth of doubt. */
-	if (state->utime < 0 || state->utime > UTIME_MAX || (state->utime <= c->last_frame && c->last_frame - state->utime < 2000000))
+	if (!bus_utime_ok(state->utime) || (state->utime <= c->last_frame && c->last_frame - state->utime < 2000000))
 		return false;
 	if (!layout_from_message(&layout, state))
 		return false;

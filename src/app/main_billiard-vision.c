@@ -106,6 +106,8 @@ static bool on_camera(void *context, const void *message)
 	struct vision_process *p = context;
 	const billiard_image_t *image = message;
 	char err[PROCESS_ERROR_SIZE];
+	if (!bus_utime_ok(image->utime))
+		return false;
 	if (image_decode(image->data, (size_t)image->size, &p->frame.image, err, sizeof err) < 0) {
 		p->bad++;
 		process_error(&p->process, "CAMERA: %s", err);
