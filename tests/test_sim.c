@@ -158,8 +158,6 @@ static void run_watched(struct watch *w, struct sim *sim)
 {
 	static struct sim before;
 	struct event event;
-	int watched =
-		(int)(random_u64(r) % 8); /* copying the whole state at each event is dear: one shot in eight is */
 	w->energy = sim_energy(sim);
 	int events = 0;
 	for (;;) {
