@@ -9,7 +9,8 @@
 #include "scenes.h"
 #include "search_scenes.h"
 
-enum { ROUNDS = 5 };
+static int rounds = 5;
+static double search_seconds = 1;
 
 static double clock_of(clockid_t clock)
 {
@@ -65,7 +66,7 @@ static struct planner *make(const struct table *table, const struct way *way)
 	def.sync_period = way->period;
 	def.sync_window = way->window;
 	def.now = seconds;
-	def.progress_plans = 1;
+	def.progress_plans = def.result_plans = 1;
 	if (!model_from_name(way->model, &def.model) || planner_create(&planner, &def) != 0) {
 		fprintf(stderr, "bench: no planner\n");
 		exit(EXIT_FAILURE);
@@ -107,7 +108,7 @@ static struct run measure(const struct table *table, const struct way *way, cons
 static struct run best_of(const struct table *table, const struct way *way, const struct plan_request *request)
 {
 	struct run best = measure(table, way, request);
-	for (int i = 1; i < ROUNDS; i++) {
+	for (int i = 1; i < rounds; i++) {
 		struct run run = measure(table, way, request);
 		if (run.work / run.wall > best.work / best.wall)
 			best = run;
@@ -158,7 +159,7 @@ static struct plan_request long_request(const struct table *table)
 	request.depth = 4;
 	request.speeds = 3;
 	request.plans = PLAN_MAX;
-	request.budget.seconds = 1;
+	request.budget.seconds = search_seconds;
 	return request;
 }
 
@@ -196,7 +197,7 @@ static void bench_exhaustion(struct report *report, const struct table *table)
 		for (int workers = 1; workers <= 2; workers++) {
 			struct way way = {"thesis", (enum plan_scheme)s, workers, 0.1, 0.004};
 			struct run run = measure(table, &way, &request);
-			for (int i = 1; i < 4 * ROUNDS; i++) {
+			for (int i = 1; i < 4 * rounds; i++) {
 				struct run again = measure(table, &way, &request);
 				if (again.wall < run.wall)
 					run = again;
@@ -238,10 +239,13 @@ static void bench_windows(FILE *csv, const struct table *table)
 
 int main(int argc, char **argv)
 {
-	if (argc < 2) {
-		fprintf(stderr, "usage: %s BUILD\n", argv[0]);
+	if (argc < 2 || argc > 5) {
+		fprintf(stderr, "usage: %s BUILD [throughput|exhaustion|windows [SECONDS [ROUNDS]]]\n", argv[0]);
 		return EXIT_FAILURE;
 	}
+	const char *part = argc > 2 ? argv[2] : "";
+	search_seconds = argc > 3 ? strtod(argv[3], NULL) : search_seconds;
+	rounds = argc > 4 ? atoi(argv[4]) : rounds;
 	char path[512];
 	snprintf(path, sizeof path, "%s/planner.csv", argv[1]);
 	FILE *csv = fopen(path, "w");
@@ -252,9 +256,12 @@ int main(int argc, char **argv)
 	struct report *report = report_open(argv[1], "bench.json");
 	struct table table = scene_thesis_table();
 	fprintf(csv, "scheme,k_ms,n_ms,work_per_s,work_per_cpu_s,waited\n");
-	bench_throughput(report, &table);
-	bench_exhaustion(report, &table);
-	bench_windows(csv, &table);
+	if (!*part || strcmp(part, "throughput") == 0)
+		bench_throughput(report, &table);
+	if (!*part || strcmp(part, "exhaustion") == 0)
+		bench_exhaustion(report, &table);
+	if (!*part || strcmp(part, "windows") == 0)
+		bench_windows(csv, &table);
 	fclose(csv);
 	return report_close(report) == 0 ? EXIT_SUCCESS : EXIT_FAILURE;
 }
