@@ -1,6 +1,7 @@
 /* Contact laws of the realistic models: what one contact does to velocity and spin. Pure functions: they change vel and
- * spin only, the caller sets the phase. All are exact about symmetry: mirrored or turned input gives mirrored or turned
- * output up to rounding. Constants are those of table->material. */
+ * spin only, the caller sets the phase. Turned or mirrored input gives turned or mirrored output, up to rounding
+ * (Mathavan's law up to the error of its integration). Constants are those of table->material; formulas, sources and
+ * ranges are in docs/physics.md. */
 #ifndef BILLIARD_PHYSICS_CONTACT_REAL_H
 #define BILLIARD_PHYSICS_CONTACT_REAL_H
 
