@@ -25,8 +25,8 @@ static vec2 friction_impulse(const struct material *m, vec2 slip, double normal_
 	return vec2_scale(slip, -fmin(mu * normal_impulse / speed, share / 7));
 }
 
-/* A tangential impulse (t, z components, per unit mass) at the end of the radius along +n turns a ball about z and t.
- */
+/* A tangential impulse (t, z components, per unit mass) at the end of the radius along +n turns a ball about z
+ * and t. */
 static void turn(vec2 n, vec2 impulse, double radius, double spin[3])
 {
 	vec2 about = vec2_scale(vec2_perp(n), -2.5 / radius * impulse.y);
@@ -65,8 +65,8 @@ void contact_ball_frictional(const struct table *table, struct ball *a, struct b
 	const struct material *m = &table->material;
 	double r = table->ball_radius;
 	vec2 n = vec2_unit(vec2_sub(b->pos, a->pos));
-	vec2 va = to_line(n, a->vel), vb = to_line(n, b->vel);
-	double approach = va.x - vb.x;
+	/* The very expression by which callers decide that the balls approach: the same to the last bit. */
+	double approach = vec2_dot(vec2_sub(a->vel, b->vel), n);
 	assert(approach >= 0);
 
 	vec2 slip = surface_slip(n, r, a, b);
