@@ -128,6 +128,8 @@ void planner_export(struct planner *planner, int limit, struct plan_result *resu
 		.refined = planner->refined,
 		.exhausted = !planner->cut && !planner->overflow,
 	};
+	if (result->found > planner->request->plans)
+		result->found = planner->request->plans;
 	result->plan_count = limit > 0 && limit < result->found ? limit : result->found;
 	for (int i = 0; i < result->plan_count; i++)
 		export_plan(planner, solutions_at(list, i), &planner->plan[i]);

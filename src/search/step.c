@@ -155,9 +155,13 @@ void search_begin(struct planner *planner)
 	planner->nodes = planner->sims = planner->tried = planner->landed = planner->refined = 0;
 	planner->overflow = planner->cut = false;
 	planner->batch_count = 0;
+	/* who ranks by success must look at more than the cheapest few */
+	int kept = request->plans;
+	if (planner->def.profile.rank_by_success && kept < RANKED_MAX)
+		kept = RANKED_MAX;
 	for (int i = 0; i <= SAFETY_LIST; i++) {
 		planner->solutions[i].count = 0;
-		planner->solutions[i].limit = i == SAFETY_LIST ? 1 : request->plans;
+		planner->solutions[i].limit = i == SAFETY_LIST ? 1 : kept;
 	}
 	for (int i = 0; i < request->ball_count; i++)
 		if (request->ball[i].colour == COLOUR_WHITE)
@@ -195,7 +199,7 @@ void slot_work(const struct planner *planner, struct slot *slot, struct workspac
 static void work_on(void *context, int item, int worker)
 {
 	struct planner *planner = context;
-	slot_work(planner, &planner->slot[item], &planner->work[worker]);
+	slot_work(planner, &planner->slot[planner->claim[item]], &planner->work[worker]);
 }
 
 /* Cost that a sequence must stay below to be among the wanted ones. */
@@ -269,15 +273,24 @@ static void merge(struct planner *planner, const struct slot *slot, bool *improv
 static int batch_size(struct planner *planner)
 {
 	uint64_t budget = planner->request->budget.nodes, used = planner->nodes + planner->sims;
-	if (budget == 0 || budget - used >= BATCH)
-		return BATCH;
-	return (int)(budget - used);
+	int size = planner->batch_count < FIRST_SLICE ? FIRST_BATCH : BATCH;
+	return budget == 0 || budget - used >= (uint64_t)size ? size : (int)(budget - used);
 }
 
 bool node_is_spare(const struct planner *planner, const struct node *node)
 {
 	return node->aim != 0 && node->chain_count > 0 &&
 	       (planner->state[node->state].landed[node->chain[0]] >> node->pocket & 1);
+}
+
+/* What is simulated takes longest: workers claim it first, so that they are done at about the same time. */
+static void order_claims(struct planner *planner, int count)
+{
+	int at = 0;
+	for (int complete = 1; complete >= 0; complete--)
+		for (int i = 0; i < count; i++)
+			if (planner->slot[i].node.complete == complete)
+				planner->claim[at++] = (uint8_t)i;
 }
 
 bool search_step(struct planner *planner, bool *improved)
@@ -295,6 +308,7 @@ bool search_step(struct planner *planner, bool *improved)
 		planner->slot[count].node = frontier_pop(&planner->frontier);
 		count += !node_is_spare(planner, &planner->slot[count].node);
 	}
+	order_claims(planner, count);
 	if (planner->batch_count < FIRST_SLICE)
 		for (int i = 0; i < count; i++)
 			work_on(planner, i, 0);
