@@ -28,8 +28,9 @@ struct sim_limits {
 
 #include "physics/sim_state.h"
 
-/* Balls are copied. Precondition (asserted): table_finish() done, table_check_balls() accepts the balls, count in
- * 1..BALL_MAX. The table is borrowed until the last use of sim. Balls may already move. */
+/* Balls are copied. Precondition: table_finish() done, table_check_balls() accepts the balls (asserted: all finite,
+ * count in 1..BALL_MAX; the rest is the border's to check, a search calls this too often). The table is borrowed until
+ * the last use of sim. Balls may already move. */
 void sim_init(struct sim *sim, const struct table *table, const struct model *model, const struct ball *ball,
 	      int count);
 
