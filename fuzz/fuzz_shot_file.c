@@ -22,7 +22,7 @@ int LLVMFuzzerTestOneInput(const uint8_t *data, size_t size)
 		abort();
 	struct sim sim;
 	sim_init(&sim, &file.table, &file.model, file.ball, file.ball_count);
-	sim_run(&sim, &(struct sim_limits){.max_time = 60, .max_events = 300}, NULL);
+	sim_run(&sim, &(struct sim_limits){.max_time = 60, .max_events = 100}, NULL);
 	for (int i = 0; i < file.ball_count; i++) {
 		struct ball ball = sim_ball(&sim, i);
 		if (!ball_is_finite(&ball))

@@ -335,7 +335,7 @@ static double impulse_left(const struct impact *im, double target, const double 
 
 /* Shares of the speed before: error estimate allowed a step; a slip that counts as none; an impulse no impact needs. */
 static const double TOLERANCE = 1e-6, REST_SLIP = 1e-5, IMPULSE_MAX = 20;
-enum { STEPS_MAX = 2000 };
+enum { STEPS_MAX = 1000 };
 
 /* Integrates to the end of a phase; scale: speed before, m/s. False: friction wedges the ball in, the phase has no end.
  */
