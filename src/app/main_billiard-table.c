@@ -62,6 +62,28 @@ static void publish_frame(struct virtual_process *p, int64_t utime, double now)
 	bus_publish(p->process.bus, "CAMERA", &bus_image, &message);
 }
 
+static void name_balls(struct virtual_process *p, const struct position *position)
+{
+	int number[COLOUR_COUNT] = {0};
+	for (int i = 0; i < p->table->count; i++) {
+		enum ball_colour colour = p->table->ball[i].colour;
+		if (position)
+			snprintf(p->name[i], sizeof p->name[i], "%s", position->name[i]);
+		else
+			snprintf(p->name[i], sizeof p->name[i], "%s%d", ball_colour_name(colour), ++number[colour]);
+	}
+}
+
+/* The frame is over: the next one, with other errors of the player. */
+static void rack_again(struct virtual_process *p)
+{
+	struct ball rack[BALL_MAX];
+	player_rack(&p->config.table, rack);
+	p->config.virtual_table.seed++;
+	player_init(p->table, &p->config.table, &p->config.model, &p->config.virtual_table, p->config.infinity.rules, rack, BALL_MAX);
+	name_balls(p, NULL);
+}
+
 /* The end of a shot: what fell is said before the colours come back. */
 static void end_shot(struct virtual_process *p, int64_t utime, double now)
 {
@@ -69,11 +91,8 @@ static void end_shot(struct virtual_process *p, int64_t utime, double now)
 	if (!player_tick(p->table, now))
 		return;
 	p->points += p->table->result.points;
-	if (player_is_done(p->table)) {
-		struct ball rack[BALL_MAX];
-		player_rack(&p->config.table, rack);
-		player_init(p->table, &p->config.table, &p->config.model, &p->config.virtual_table, p->config.infinity.rules, rack, BALL_MAX);
-	}
+	if (player_is_done(p->table))
+		rack_again(p);
 	publish_truth(p, utime, now, false);
 }
 
@@ -179,18 +198,6 @@ static void describe(void *context, struct process *process)
 }
 
 /* ---- set-up --------------------------------------------------------------------------------------------------------- */
-
-static void name_balls(struct virtual_process *p, const struct position *position)
-{
-	int number[COLOUR_COUNT] = {0};
-	for (int i = 0; i < p->table->count; i++) {
-		enum ball_colour colour = p->table->ball[i].colour;
-		if (position)
-			snprintf(p->name[i], sizeof p->name[i], "%s", position->name[i]);
-		else
-			snprintf(p->name[i], sizeof p->name[i], "%s%d", ball_colour_name(colour), ++number[colour]);
-	}
-}
 
 static int set_balls(struct virtual_process *p, const char *path, char *err, size_t err_size)
 {
