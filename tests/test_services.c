@@ -458,8 +458,12 @@ START_TEST(the_loop_survives_the_death_of_each)
 	}
 	for (int i = 0; i < PROGRAM_COUNT; i++)
 		kill(pid[i], SIGTERM);
-	for (int i = 0; i < PROGRAM_COUNT; i++)
-		ck_assert_int_eq(fixture_end(pid[i], 2), 0);
+	for (int i = 0; i < PROGRAM_COUNT; i++) {
+		char said[TEXT_SIZE];
+		int status = fixture_end(pid[i], 2);
+		fixture_said(pid[i], 2, said, sizeof said);
+		ck_assert_msg(status == 0, "%s: status %d: %s", programs[i], status, said);
+	}
 }
 END_TEST
 
