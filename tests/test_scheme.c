@@ -266,9 +266,15 @@ START_TEST(overflow_is_told)
 	def.scheme = (enum plan_scheme)_i;
 	def.workers = 2;
 	def.now = seconds;
-	def.memory = 1;
-	while (planner_create(&planner, &def) != 0)
-		def.memory += def.memory / 100 + 1000;
+	size_t little = 1, enough = 64u << 20;
+	while (enough - little > 4096) {	/* the least that is accepted, to some 30 nodes */
+		def.memory = little + (enough - little) / 2;
+		int rc = planner_create(&planner, &def);
+		*(rc == 0 ? &enough : &little) = def.memory;
+		planner_destroy(planner);
+	}
+	def.memory = enough + 4096;
+	ck_assert_int_eq(planner_create(&planner, &def), 0);
 	struct plan_request request = long_request(&table);
 	request.depth = 1;
 	struct plan_result result = scene_run(planner, &request);

@@ -9,15 +9,16 @@
 #include "search/shot.h"
 
 enum {
-	BATCH = 16,	 /* nodes worked on at a time: never depends on the number of workers, so that results do not */
+	BATCH = 32, /* nodes worked on at a time: never depends on the number of workers, so that results do not */
+	FIRST_BATCH = 8, /* the same in the first slice, where the first answer is looked for */
 	RANKED_MAX = 64, /* plans whose success is found when a profile ranks by it */
 	SPEEDS_MAX = 32, /* start speeds of one candidate */
 	CHILDREN_MAX = 2048, /* of one expansion */
 	STATES_MAX = 2048,
 	AIMS_MAX = 10, /* aims at a pocket: up to 9 points of it, and along a cushion */
 	ROOTS_MAX = POCKET_MAX * AIMS_MAX,
-	SAFETY_STEP = 2,	      /* after so many batches without a proposal a simple contact is proposed */
-	FIRST_SLICE = 4, /* batches that the caller works on alone, without waking anybody */
+	SAFETY_STEP = 4,	      /* after so many batches without a proposal a simple contact is proposed */
+	FIRST_SLICE = 8, /* batches that the caller works on alone, without waking anybody */
 	SAFETY_LIST = PLAN_SHOTS_MAX, /* place of the contact shot among the lists of solutions */
 	NO_STATE = -1
 };
@@ -82,6 +83,7 @@ struct planner {
 	struct pool *pool;
 	struct workspace *work;	     /* one a worker */
 	struct slot *slot;	     /* BATCH */
+	uint8_t claim[BATCH];	     /* slots in the order in which workers take them */
 	struct state *state;	     /* STATES_MAX */
 	struct solutions *solutions; /* by number of shots, and at SAFETY_LIST the contact shot */
 	struct plan *plan;	     /* PLAN_MAX, what results point to */
