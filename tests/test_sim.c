@@ -269,7 +269,7 @@ static const struct {
 	{"thesis", 0xc30fbc99b8a1eeb9},
 	{"simple", 0xd215d73122f37fd7},
 	{"simple-elastic", 0x2e1aa36f81a05d4d},
-	{"real", 0x57f1ab1817b9b7cf},
+	{"real", 0x3a5e40d726dca41e},
 };
 enum { GOLDEN = sizeof golden / sizeof *golden };
 

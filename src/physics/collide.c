@@ -7,13 +7,15 @@
 /* Contacts within this time are one instant: above the rounding of a contact's time, and at 20 m/s less than 1e-10 m.
  */
 static const double SAME_INSTANT = 4e-12; /* s */
-/* Two bodies that press on each other meet again no sooner than this. The restitution laws have no force that lasts;
- * without a bound, a pressed pair bounces ever faster (Luding and McNamara 1998 bound it likewise). */
+/* Two bodies that press on each other meet again no sooner than this, nor than this share of the time in which the
+ * cloth could take all their motion. The restitution laws have no force that lasts; without a bound, a pressed pair
+ * bounces ever faster (Luding and McNamara 1998 bound it likewise). */
 static const double PRESS_INTERVAL = 2e-3; /* s */
+static const double PRESS_SHARE = 2e-3;
 /* At most this share of the pair's root mean square speed goes into keeping them apart. */
 static const double LIFT_SHARE = 0.2;
 /* More contacts than this at one instant are an inelastic collapse, not a cascade through a rack. */
-enum { CASCADE_MAX = 400 };
+enum { CASCADE_MAX = 150 };
 /* The thesis' topspin adds speed at each contact: in a cascade of one instant it counts for this many contacts only. */
 enum { TOPSPIN_MAX = 32 };
 
@@ -67,13 +69,15 @@ static void scale_motion(struct ball *ball, double k)
 
 /* ---- pressing contacts ---- */
 
-/* Separation speed that keeps two bodies apart for PRESS_INTERVAL when they press with acceleration `press`. */
+/* Separation speed that keeps two bodies apart for a while when they press with acceleration `press`. */
 static double lift_speed(const struct sim *sim, double press, double rms_speed)
 {
-	double lift = 0.5 * press * PRESS_INTERVAL;
+	const struct material *m = &sim->table->material;
+	double interval = fmax(PRESS_INTERVAL, PRESS_SHARE * rms_speed / (m->mu_slide * m->gravity));
+	double lift = 0.5 * press * interval;
 	double most = LIFT_SHARE * rms_speed;
 	if (sim->instant_contacts > CASCADE_MAX)
-		lift = fmax(lift, 1e-6 * rms_speed * (sim->instant_contacts - CASCADE_MAX));
+		lift = fmax(lift, 1e-4 * rms_speed * (sim->instant_contacts - CASCADE_MAX));
 	return lift < most ? lift : most;
 }
 
