@@ -11,7 +11,7 @@
 #include "vision_eval.h"
 
 static const double mm = 1000, FOUND = 0.015;
-enum { SHOT_BALLS = 22, WARM_UP = 30 };
+enum { SHOT_BALLS = 22, WARM_UP = 5 };
 
 struct watched {
 	vec2 start;		/* m */

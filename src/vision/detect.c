@@ -6,6 +6,7 @@
 static const double EDGE_SLACK = 0.007;		/* m a fitted centre may lie beyond where cushions let it be */
 static const double MOUTH_INNER = 0.8;		/* of a pocket's radius: nearer to its centre a ball has fallen */
 static const double SUPPORT_SEED = 0.42, SUPPORT_PACKED = 0.33, SUPPORT_MIN = 0.62;
+static const double CLOTH_OFF = 0.2, CLOTH_DARK = -0.8, CLOTH_LIGHT = 0.3;	/* ln of levels over the cloth's */
 enum { ROUNDS = 3 };
 static const double SUPPORT_ROUGH = 0.17;	/* less in the first round */
 static const double SUPPORT_CROWDED = 0.5, RING_FREE = 0.3;	/* more of it is wanted where it lies among other foreign things */
@@ -196,11 +197,20 @@ static void try_packed(struct detector *d, struct fit_view *view)
 	view->other_count = 0;
 }
 
+/* Lit or shaded, but cloth all the same: the projector draws circles as large as balls. */
+static bool looks_like_cloth(const struct colour_feature *look)
+{
+	double mean = (look->v[0] + look->v[1] + look->v[2]) / 3, off = 0;
+	for (int i = 0; i < 3; i++)
+		off = fmax(off, fabs(look->v[i] - mean));
+	return off < CLOTH_OFF && mean > CLOTH_DARK && mean < CLOTH_LIGHT;
+}
+
 static enum refusal judge(const struct detector *d, const struct candidate *c, double relief)
 {
 	if (!detect_possible(d->table, c->fit.pos))
 		return REFUSED_PLACE;
-	if (c->cover < COVER_MIN)
+	if (c->cover < COVER_MIN || looks_like_cloth(&c->look))
 		return REFUSED_INSIDE;
 	if (c->fit.support < SUPPORT_MIN - relief + SUPPORT_CROWDED * fmax(0, c->ring - RING_FREE))
 		return REFUSED_RIM;
@@ -344,13 +354,14 @@ static void push_apart(struct detector *d, int sweeps)
 }
 
 /* relief: how much less rim than usual is enough. */
-static void judge_all(struct detector *d, double relief)
+static void judge_all(struct detector *d, const struct image *frame, double relief)
 {
 	for (int i = 0; i < d->count; i++) {
 		struct candidate *c = &d->candidate[i];
 		if (c->fixed)
 			continue;
 		look_around(d, c, true);
+		c->look = colour_measure(frame, &c->fit.outline, c->fit.cloth);
 		c->refusal = judge(d, c, relief);
 		c->confidence = c->fit.support * c->cover;
 	}
@@ -375,7 +386,7 @@ static void settle(struct detector *d, struct fit_view *view)
 		refuse_overlaps(d);
 		drop_refused(d);
 		/* What is no ball must neither hide nor push one; in the first round rims are still badly known. */
-		judge_all(d, round == 0 ? SUPPORT_ROUGH : 0);
+		judge_all(d, view->frame, round == 0 ? SUPPORT_ROUGH : 0);
 		if (round + 1 < ROUNDS)
 			try_packed(d, view);
 	}
