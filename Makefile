@@ -37,7 +37,7 @@ TESTS := fsm stability plan_message controller planner_service planner_bus bus p
 	camera pose fit colour stabilise image_io capture vision vision_photos
 TEST_SHARED := harness brute_force bus_fixture planner_client random poly_judge scenes search_scenes shot_compare vision_scene
 # tests that are scripts: tests/NAME.sh, called with the build folder
-TEST_SCRIPTS := cli demo units
+TEST_SCRIPTS := cli demo planner units
 # bench/bench_NAME.c each; bench/NAME.c shared by them
 BENCHES := physics accuracy planner planner_bus search
 # bench/eval_NAME.c each: accuracy on recorded data
