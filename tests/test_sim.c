@@ -91,11 +91,11 @@ static struct shot random_shot(struct random *r)
 struct watch {
 	const struct table *table;
 	bool jaws;
-	double energy;
-	double overlap; /* m, deepest so far */
-	double gain;	/* share, largest growth of energy so far */
-	double behind;	/* m, farthest behind a rail's nose less a radius */
-	int lost;	/* balls that are not finite or off the table */
+	double energy, start_energy; /* J */
+	double overlap;		     /* m, deepest so far */
+	double gain;		     /* share, largest growth of energy so far */
+	double behind;		     /* m, farthest behind a rail's nose less a radius */
+	int lost;		     /* balls that are not finite or off the table */
 	int events;
 };
 
@@ -138,8 +138,10 @@ static bool may_gain(const struct sim *before, const struct event *event)
 static void watch_step(struct watch *w, const struct sim *before, const struct sim *sim, const struct event *event)
 {
 	double energy = sim_energy(sim);
+	/* the clock's rounding, times an acceleration, is a velocity: below a billionth of the shot's energy it shows
+	 */
 	if (!may_gain(before, event) && w->energy > 0)
-		w->gain = fmax(w->gain, energy / w->energy - 1);
+		w->gain = fmax(w->gain, (energy - w->energy) / fmax(w->energy, 1e-9 * w->start_energy));
 	w->energy = energy;
 	struct ball now[BALL_MAX], middle[BALL_MAX];
 	double half = 0.5 * (sim->time - before->time);
@@ -159,7 +161,7 @@ static void run_watched(struct watch *w, struct sim *sim)
 {
 	static struct sim before;
 	struct event event;
-	w->energy = sim_energy(sim);
+	w->energy = w->start_energy = sim_energy(sim);
 	int events = 0;
 	for (;;) {
 		before = *sim;
