@@ -46,6 +46,26 @@ for n in 1 2 3; do
 	seen=$(sed -n "s/^shot $n: \([0-9]*\) balls seen.*/\1/p" "$folder/out")
 	check "shot-$n-camera.png shows the $seen balls, found $balls" [ "$balls" = "$seen" ]
 done
+# The same on photographs; one of them is none.
+photos=${DATA:-../shared/data}/photos/with_halo_2
+if [ -d "$photos" ]; then
+	mkdir "$folder/photos"
+	cp "$photos/1.png" "$photos/11.png" "$folder/photos"
+	echo "no photograph" >"$folder/photos/5.png"
+	scripts/demo "$folder" "$folder/photos" >"$folder/out" 2>"$folder/err" </dev/null
+	check "photographs: status 0" [ $? = 0 ]
+	cat "$folder/out"
+	check "a proposal for 1.png" lines 1 '^photo 1: 1.png: 14 balls seen.*; proposed .* -> .*ms from rest to proposal$'
+	check "a proposal for 11.png" lines 1 '^photo 2: 11.png: 14 balls seen.*; proposed .* -> .*ms from rest to proposal$'
+	check "four pictures" [ "$(find "$folder/demo" -name 'shot-[12]-*.png' -size +14k | wc -l)" = 4 ]
+	check "5.png is said to be none" grep -q '5.png' "$folder/err"
+else
+	echo "demo: photographs SKIPPED, no data at $photos"
+fi
+mkdir "$folder/empty"
+scripts/demo "$folder" "$folder/empty" >"$folder/out" 2>"$folder/err" </dev/null
+check "an empty folder: status 2" [ $? = 2 ]
+check "an empty folder: one line that names it" [ "$(grep -c "$folder/empty" "$folder/err")$(wc -l <"$folder/err")" = 11 ]
 [ "$failed" = 0 ] || sed 's/^/    err: /' "$folder/err" | tail -n 20
 echo "$passed passed, $failed failed"
 [ "$failed" = 0 ]

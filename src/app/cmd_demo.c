@@ -15,6 +15,7 @@
 #include "app/plan_message.h"
 #include "app/process.h"
 #include "app/supervisor.h"
+#include "vision/capture_cv.h"
 #include "vision/image_io_cv.h"
 
 static const double PICTURE_DELAY = 0.4;	/* s from a drawn proposal until its light is in the camera's picture */
@@ -232,6 +233,8 @@ static bool on_status(void *context, const void *message)
 	bus_text(state, sizeof state, s->state, sizeof s->state);
 	if (strcmp(name, "billiard-vision") == 0 && strcmp(state, "end of source") == 0)
 		d->source_ended = true;
+	if (strcmp(name, "billiard-vision") == 0 && strncmp(state, "photo ", 6) == 0)
+		snprintf(d->picture, sizeof d->picture, "%s", state + 6);
 	return true;
 }
 
@@ -403,12 +406,29 @@ static int parse(struct demo_options *o, int argc, char **argv)
 	return 0;
 }
 
+/* An input without photographs is said at once, not by a service that does not start. */
+static int check_input(const char *folder)
+{
+	char source[TEXT_SIZE + 32], err[TEXT_SIZE];
+	struct capture *capture;
+	struct capture_def def = {.source = source};
+	snprintf(source, sizeof source, "dir:%s", folder);
+	int r = capture_open(&capture, &def, err, sizeof err);
+	if (r < 0)
+		fprintf(stderr, "billiard demo: %s\n", err);
+	else
+		capture_close(capture);
+	return r;
+}
+
 int cmd_demo(int argc, char **argv)
 {
 	struct demo_options options;
 	int r = parse(&options, argc, argv);
 	if (r)
 		return r == 1 ? 0 : 2;
+	if (options.input && check_input(options.input) < 0)
+		return 2;
 	struct demo *d = calloc(1, sizeof *d);
 	if (!d)
 		return 1;

@@ -95,7 +95,7 @@ static void see(struct vision_process *p, const struct image *frame, int64_t uti
 	p->frames++;
 	if (p->result.calibration == CALIBRATION_NONE)
 		process_state(&p->process, "not calibrated");
-	else
+	else if (!p->folder)
 		process_state(&p->process, p->result.occluded ? "occluded" : "running");
 }
 
@@ -153,6 +153,10 @@ static void show_dark(struct vision_process *p)
 {
 	p->result = (struct vision_result){.calibration = CALIBRATION_NONE, .reason = "next photograph"};
 	publish_state(p, p->frame.utime, p->frame.seq);
+	p->last_frame = p->frame.utime;
+	p->last_arrival = process_seconds(NULL);
+	const char *slash = strrchr(p->picture, '/');
+	process_state(&p->process, "photo %s", slash ? slash + 1 : p->picture);
 }
 
 static int on_source(sd_event_source *event, int fd, uint32_t events, void *context)
