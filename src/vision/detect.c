@@ -6,7 +6,8 @@
 static const double EDGE_SLACK = 0.007;		/* m a fitted centre may lie beyond where cushions let it be */
 static const double MOUTH_INNER = 0.8;		/* of a pocket's radius: nearer to its centre a ball has fallen */
 static const double SUPPORT_SEED = 0.42, SUPPORT_PACKED = 0.33, SUPPORT_MIN = 0.62;
-static const double CLOTH_OFF = 0.2, CLOTH_DARK = -0.8, CLOTH_LIGHT = 0.3;	/* ln of levels over the cloth's */
+static const double CLOTH_OFF = 0.22, CLOTH_OFF_RIM = 0.1, CLOTH_RIM = 0.85;
+static const double CLOTH_DARK = -0.8, CLOTH_LIGHT = 0.3;	/* ln of levels over the cloth's */
 enum { ROUNDS = 3 };
 static const double SUPPORT_ROUGH = 0.17;	/* less in the first round */
 static const double SUPPORT_CROWDED = 0.5, RING_FREE = 0.3;	/* more of it is wanted where it lies among other foreign things */
@@ -198,19 +199,22 @@ static void try_packed(struct detector *d, struct fit_view *view)
 }
 
 /* Lit or shaded, but cloth all the same: the projector draws circles as large as balls. */
-static bool looks_like_cloth(const struct colour_feature *look)
+static bool looks_like_cloth(const struct candidate *c)
 {
+	const struct colour_feature *look = &c->look;
 	double mean = (look->v[0] + look->v[1] + look->v[2]) / 3, off = 0;
 	for (int i = 0; i < 3; i++)
 		off = fmax(off, fabs(look->v[i] - mean));
-	return off < CLOTH_OFF && mean > CLOTH_DARK && mean < CLOTH_LIGHT;
+	/* A whole rim speaks for a pale ball. */
+	double bar = c->fit.support > CLOTH_RIM ? CLOTH_OFF_RIM : CLOTH_OFF;
+	return off < bar && mean > CLOTH_DARK && mean < CLOTH_LIGHT;
 }
 
 static enum refusal judge(const struct detector *d, const struct candidate *c, double relief)
 {
 	if (!detect_possible(d->table, c->fit.pos))
 		return REFUSED_PLACE;
-	if (c->cover < COVER_MIN || looks_like_cloth(&c->look))
+	if (c->cover < COVER_MIN || looks_like_cloth(c))
 		return REFUSED_INSIDE;
 	if (c->fit.support < SUPPORT_MIN - relief + SUPPORT_CROWDED * fmax(0, c->ring - RING_FREE))
 		return REFUSED_RIM;
