@@ -39,10 +39,10 @@ TEST_SHARED := harness brute_force bus_fixture planner_client random poly_judge 
 # tests that are scripts: tests/NAME.sh, called with the build folder
 TEST_SCRIPTS := cli demo planner units
 # bench/bench_NAME.c each; bench/NAME.c shared by them
-BENCHES := physics accuracy planner planner_bus search
+BENCHES := physics accuracy planner planner_bus search vision
 # bench/eval_NAME.c each: accuracy on recorded data
-EVALS := physics search vision
-BENCH_SHARED := report plain_sim plain_sim_long vision_eval vision_eval_photos vision_eval_videos vision_eval_rendered
+EVALS := physics search vision planner
+BENCH_SHARED := report plain_sim plain_sim_long vision_eval vision_eval_photos vision_eval_videos vision_eval_rendered hough_cv
 # fuzz/fuzz_NAME.c each, seeds in fuzz/corpus/NAME
 FUZZERS := position config shot_file colours image bus
 FUZZ_SECONDS ?= 20
