@@ -63,11 +63,16 @@ struct node candidate_root(const struct scene *scene, int pocket, int aim)
 	};
 }
 
+/* What a ball that first slides must have of the square of the speed that one has which rolls from the start (4.33). */
+static double slide_gain(const struct material *m)
+{
+	return 49 * m->mu_slide / (49 * m->mu_slide + 24 * (m->mu_roll - m->mu_slide));
+}
+
 /* The thesis' program uses the rolling branch of 4.33 for every leg, short ones and those off a cushion too. */
 static double program_leg_backward(const struct material *m, double v_end, double way)
 {
-	double rolled = v_end * v_end + 2 * m->gravity * m->mu_roll * way;
-	return sqrt(49 * m->mu_slide * rolled / (49 * m->mu_slide + 24 * (m->mu_roll - m->mu_slide)));
+	return sqrt(slide_gain(m) * (v_end * v_end + 2 * m->gravity * m->mu_roll * way));
 }
 
 double candidate_leg_backward(const struct scene *scene, double v_end, double way, bool rolling)
@@ -158,35 +163,63 @@ static void extend(const struct scene *scene, const struct node *node, const str
 	child->complete = is_cue;
 }
 
-/* Ball over one sequence to the node's target: cheap tests first. */
-static bool try_way(const struct scene *scene, const struct node *node, const struct images *images, int ball,
-		    int sequence, struct node *child)
+/* One node being expanded, and what all its ways have in common. */
+struct expansion {
+	const struct scene *scene;
+	const struct node *node;
+	double cos2; /* square of the cosine of the largest cut */
+	double least_gain[PLAN_RAILS_MAX +
+			  1]; /* by cushions: the start speed is at least so many times that on arrival */
+	struct images images;
+};
+
+static void expansion_init(struct expansion *x, const struct scene *scene, const struct node *node)
 {
-	const struct cost_profile *profile = scene->profile;
-	vec2 start = scene->ball[ball].pos;
-	vec2 d = vec2_sub(images->at[sequence], start);
-	double along = vec2_dot(d, images->direction[sequence]), length2 = vec2_norm2(d);
-	double cos_max = cos(profile->max_cut);
-	if (along <= 0 || along * along <= cos_max * cos_max * length2)
+	double cos_max = cos(scene->profile->max_cut);
+	double leg = scene->profile->program_speed ? sqrt(slide_gain(&scene->table->material)) : 1;
+	x->scene = scene;
+	x->node = node;
+	x->cos2 = cos_max * cos_max;
+	x->least_gain[0] = leg;
+	for (int i = 1; i <= PLAN_RAILS_MAX; i++)
+		x->least_gain[i] = cushion_backward(scene->table, x->least_gain[i - 1]) * leg;
+}
+
+/* Start speed over a way that is built; more than the largest when it has no length. */
+static double start_speed(const struct expansion *x, const struct way *way, double arrival)
+{
+	for (int i = 0; i <= way->rails; i++)
+		if (way->leg[i] <= 0)
+			return INFINITY;
+	double speed = way_backward(x->scene, way, arrival);
+	if (x->node->chain_count == 0 && x->node->aim == AIM_ALONG)
+		speed = cushion_backward(x->scene->table, speed);
+	return speed;
+}
+
+/* Ball over one sequence to the node's target: cheap tests first. */
+static bool try_way(const struct expansion *x, int ball, int sequence, struct node *child)
+{
+	const struct scene *scene = x->scene;
+	const struct node *node = x->node;
+	double most = scene->profile->max_speed;
+	vec2 start = scene->ball[ball].pos, d = vec2_sub(x->images.at[sequence], start);
+	double along = vec2_dot(d, x->images.direction[sequence]), length2 = vec2_norm2(d);
+	if (along <= 0 || along * along <= x->cos2 * length2)
 		return false;
 	double cos_target = along / sqrt(length2);
 	double speed = node->chain_count == 0 ? node->speed : hit_backward(scene->table, node->speed, cos_target);
 	struct way way;
-	if (speed > profile->max_speed || !way_build(&way, scene->mirrors, images, sequence, start))
+	if (speed * x->least_gain[scene->mirrors->sequence[sequence].length] > most ||
+	    !way_build(&way, scene->mirrors, &x->images, sequence, start))
 		return false;
-	for (int i = 0; i <= way.rails; i++)
-		if (way.leg[i] <= 0)
-			return false;
-	speed = way_backward(scene, &way, speed);
-	if (node->chain_count == 0 && node->aim == AIM_ALONG)
-		speed = cushion_backward(scene->table, speed);
-	if (speed > profile->max_speed || !way_is_free(scene, node, &way, ball))
+	speed = start_speed(x, &way, speed);
+	if (speed > most || !way_is_free(scene, node, &way, ball))
 		return false;
 	extend(scene, node, &way, ball, sequence, cos_target, speed, child);
-	if (!child->complete)
-		return true;
 	uint32_t all = ~(1u << scene->cue);
-	return cue_has_room(scene->table, profile, scene->ball, scene->count, all, start, child->after);
+	return !child->complete ||
+	       cue_has_room(scene->table, scene->profile, scene->ball, scene->count, all, start, child->after);
 }
 
 /* Which balls may come in front of the chain. */
@@ -206,54 +239,50 @@ static uint32_t next_balls(const struct scene *scene, const struct node *node)
 	return balls;
 }
 
-/* Children of one ball. */
-static int expand_ball(const struct scene *scene, const struct node *node, const struct images *images, int ball,
-		       struct node *child, int capacity, bool *overflow)
-{
-	int count = 0;
-	for (int s = 0; s < images->count; s++) {
-		struct node next;
-		if (!images->valid[s] || !try_way(scene, node, images, ball, s, &next))
-			continue;
-		if (count < capacity)
-			child[count++] = next;
-		else
-			*overflow = true;
-	}
-	return count;
-}
+/* Where children go. */
+struct children {
+	struct node *node;
+	int capacity, count;
+	bool overflow;
+};
 
-/* The root for balls on cushions: each has an aim of its own, and no cushions in between. */
-static int expand_along(const struct scene *scene, const struct node *node, uint32_t balls, struct node *child,
-			int capacity, bool *overflow)
+static void expand_ball(const struct expansion *x, int ball, struct children *out)
 {
-	int count = 0;
-	for (int b = 0; b < scene->count; b++) {
-		struct images images;
-		vec2 point;
-		if (!(balls >> b & 1) || scene->ball[b].phase == BALL_POTTED ||
-		    !along_point(scene, node->pocket, scene->ball[b].pos, &point))
+	for (int s = 0; s < x->images.count; s++) {
+		struct node next;
+		if (!x->images.valid[s] || !try_way(x, ball, s, &next))
 			continue;
-		images_init(&images, scene->mirrors, point, node->after, 0);
-		count += expand_ball(scene, node, &images, b, child + count, capacity - count, overflow);
+		if (out->count < out->capacity)
+			out->node[out->count++] = next;
+		else
+			out->overflow = true;
 	}
-	return count;
 }
 
 int candidate_expand(const struct scene *scene, const struct node *node, struct node *child, int capacity,
 		     bool *overflow)
 {
 	assert(!node->complete);
+	struct expansion x;
+	struct children out = {.node = child, .capacity = capacity};
 	uint32_t balls = next_balls(scene, node);
-	if (node->chain_count == 0 && node->aim == AIM_ALONG)
-		return expand_along(scene, node, balls, child, capacity, overflow);
-	struct images images;
-	images_init(&images, scene->mirrors, node->to, node->after, scene->rails);
-	int count = 0;
-	for (int b = 0; b < scene->count; b++)
-		if ((balls >> b & 1) && scene->ball[b].phase != BALL_POTTED)
-			count += expand_ball(scene, node, &images, b, child + count, capacity - count, overflow);
-	return count;
+	/* The root for balls on cushions: each has an aim of its own, and no cushions in between. */
+	bool along = node->chain_count == 0 && node->aim == AIM_ALONG;
+	expansion_init(&x, scene, node);
+	if (!along)
+		images_init(&x.images, scene->mirrors, node->to, node->after, scene->rails);
+	for (int b = 0; b < scene->count; b++) {
+		vec2 point;
+		if (!(balls >> b & 1) || scene->ball[b].phase == BALL_POTTED)
+			continue;
+		if (along && !along_point(scene, node->pocket, scene->ball[b].pos, &point))
+			continue;
+		if (along)
+			images_init(&x.images, scene->mirrors, point, node->after, 0);
+		expand_ball(&x, b, &out);
+	}
+	*overflow |= out.overflow;
+	return out.count;
 }
 
 void candidate_goals(const struct scene *scene, const struct node *node, struct goal goal[PLAN_CHAIN_MAX])

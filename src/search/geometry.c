@@ -27,7 +27,7 @@ static struct mirror *find_mirror(struct mirrors *mirrors, const struct cushion 
 	if (mirrors->count == MIRROR_MAX)
 		return NULL;
 	struct mirror *m = &mirrors->mirror[mirrors->count++];
-	*m = (struct mirror){.point = point, .normal = cushion->normal};
+	*m = (struct mirror){.point = point, .normal = cushion->normal, .along = vec2_perp(cushion->normal)};
 	return m;
 }
 
@@ -36,8 +36,7 @@ static void add_cushion(struct mirrors *mirrors, const struct cushion *cushion, 
 	struct mirror *m = find_mirror(mirrors, cushion, vec2_madd(cushion->a, radius, cushion->normal));
 	if (!m || m->span_count == MIRROR_SPANS)
 		return;
-	vec2 along = vec2_perp(m->normal);
-	double a = vec2_dot(cushion->a, along), b = vec2_dot(cushion->b, along);
+	double a = vec2_dot(cushion->a, m->along), b = vec2_dot(cushion->b, m->along);
 	m->span[m->span_count][0] = fmin(a, b);
 	m->span[m->span_count][1] = fmax(a, b);
 	m->span_count++;
@@ -86,6 +85,7 @@ void images_init(struct images *images, const struct mirrors *mirrors, vec2 targ
 		const struct sequence *s = &mirrors->sequence[i];
 		const struct mirror *m = &mirrors->mirror[s->mirror];
 		double h = height(m, images->at[s->parent]);
+		images->behind[i] = h;
 		images->valid[i] = images->valid[s->parent] && h > ON_MIRROR;
 		images->at[i] = vec2_madd(images->at[s->parent], -2 * h, m->normal);
 		images->direction[i] = turn(m, images->direction[s->parent]);
@@ -94,7 +94,7 @@ void images_init(struct images *images, const struct mirrors *mirrors, vec2 targ
 
 static bool has_nose(const struct mirror *mirror, vec2 p)
 {
-	double at = vec2_dot(p, vec2_perp(mirror->normal));
+	double at = vec2_dot(p, mirror->along);
 	for (int i = 0; i < mirror->span_count; i++)
 		if (at >= mirror->span[i][0] && at <= mirror->span[i][1])
 			return true;
@@ -104,14 +104,15 @@ static bool has_nose(const struct mirror *mirror, vec2 p)
 bool way_build(struct way *way, const struct mirrors *mirrors, const struct images *images, int sequence, vec2 start)
 {
 	int n = 0;
+	assert(images->valid[sequence]);
 	way->point[0] = start;
 	for (int s = sequence; s > 0; s = mirrors->sequence[s].parent) {
 		const struct mirror *m = &mirrors->mirror[mirrors->sequence[s].mirror];
-		double here = height(m, way->point[n]), there = height(m, images->at[s]);
-		if (here <= ON_MIRROR || there >= 0)
+		double here = height(m, way->point[n]);
+		if (here <= ON_MIRROR)
 			return false;
 		vec2 d = vec2_sub(images->at[s], way->point[n]);
-		vec2 hit = vec2_madd(way->point[n], here / (here - there), d);
+		vec2 hit = vec2_madd(way->point[n], here / (here + images->behind[s]), d);
 		if (!has_nose(m, hit))
 			return false;
 		way->normal[n] = m->normal;

@@ -11,6 +11,7 @@ enum { MIRROR_MAX = 8, MIRROR_SPANS = 4, SEQUENCE_MAX = 1 + MIRROR_MAX + MIRROR_
 /* One side of the bed, seen by a ball's centre: the noses shifted by a radius. Cushions in one line are one mirror. */
 struct mirror {
 	vec2 point, normal;	      /* a point of the shifted line; unit, into the bed */
+	vec2 along;		      /* vec2_perp(normal) */
 	double span[MIRROR_SPANS][2]; /* where there is a nose, along vec2_perp(normal) */
 	int span_count;
 };
@@ -35,7 +36,8 @@ void mirrors_init(struct mirrors *mirrors, const struct table *table);
 /* Images of a target and of a direction there, for each sequence of at most rails cushions. */
 struct images {
 	vec2 at[SEQUENCE_MAX], direction[SEQUENCE_MAX];
-	bool valid[SEQUENCE_MAX]; /* false: out of the definition domain (4.14 to 4.18) */
+	double behind[SEQUENCE_MAX]; /* m, how far at lies behind the mirror that is met first */
+	bool valid[SEQUENCE_MAX];    /* false: out of the definition domain (4.14 to 4.18) */
 	int count;
 };
 void images_init(struct images *images, const struct mirrors *mirrors, vec2 target, vec2 direction, int rails);
