@@ -30,12 +30,12 @@ APP := text_file shot_file colour_file cmd_calibrate config config_reader config
 # programs: src/app/main_NAME.c becomes build/NAME
 PROGRAMS := billiard billiard-vision billiard-planner billiard-infinity billiard-projector billiard-table
 # tests/test_NAME.c each; tests/NAME.c shared by them
-TESTS := fsm stability plan_message controller planner_service planner_bus bus process supervisor frame_source services replay \
+TESTS := fsm stability plan_message controller planner_service planner_bus bus process supervisor frame_source services loop replay \
 	config position cmd plot draw render player table_camera contact_real contact_recorded shot_file \
 	rules cost geometry frontier pool scheme candidate plan plan_thesis plan_hard plan_complete tolerance refine solutions request \
 	ball contact detect event inverse model motion queue roots sim sim_hard table trace \
 	camera pose fit colour stabilise image_io capture vision vision_photos
-TEST_SHARED := harness brute_force bus_fixture planner_client random poly_judge scenes search_scenes shot_compare vision_scene
+TEST_SHARED := harness brute_force bus_fixture service_fixture planner_client random poly_judge scenes search_scenes shot_compare vision_scene
 # tests that are scripts: tests/NAME.sh, called with the build folder
 TEST_SCRIPTS := cli demo planner units
 # bench/bench_NAME.c each; bench/NAME.c shared by them

@@ -51,13 +51,13 @@ bool fixture_wait(struct bus *bus, bool (*condition)(void), double seconds)
 		double left = end - process_seconds(NULL);
 		if (left <= 0)
 			return false;
-		poll(&fd, 1, left < 0.02 ? 1 : 20);	/* the condition may be about something else than the bus */
+		poll(&fd, 1, left < 0.02 ? 1 : 20); /* the condition may be about something else than the bus */
 		ck_assert_int_eq(bus_drain(bus), 0);
 	}
 	return true;
 }
 
-/* ---- raw messages --------------------------------------------------------------------------------------------------- */
+/* ---- raw messages ------------------------------------------------------------------------------------------------ */
 
 static int raw_size(const void *message)
 {
@@ -76,7 +76,7 @@ static int raw_encode(void *bytes, int offset, int max, const void *message)
 
 const struct bus_type bus_raw = {"raw", sizeof(struct raw_message), NULL, raw_size, raw_encode, NULL, NULL};
 
-/* ---- programs ------------------------------------------------------------------------------------------------------- */
+/* ---- programs ---------------------------------------------------------------------------------------------------- */
 
 const char *fixture_file(const char *name)
 {
@@ -126,7 +126,7 @@ static _Noreturn void become(const char *program, const char *const *arguments)
 
 pid_t fixture_start(const char *program, const char *const *arguments)
 {
-	fixture_file("");	/* the folder is there before the fork */
+	fixture_file(""); /* the folder is there before the fork */
 	ck_assert_int_lt(child_count, CHILD_MAX);
 	fflush(NULL);
 	pid_t pid = fork();

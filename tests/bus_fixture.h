@@ -9,7 +9,8 @@
 
 #define FIXTURE_URL "udpm://239.255.76.67:7667?ttl=0&recv_buf_size=4194304"
 
-/* To be called first in test_suite(): runs the test program again under scripts/with-bus, unless it runs there already. */
+/* To be called first in test_suite(): runs the test program again under scripts/with-bus, unless it runs there already.
+ */
 void fixture_begin(void);
 
 /* Opens the bus of this run. Caller closes. */
@@ -25,7 +26,8 @@ struct raw_message {
 };
 extern const struct bus_type bus_raw;
 
-/* A program of the build folder (or with a full path) with its arguments (the last NULL). What it says goes to files that fixture_said() reads. */
+/* A program of the build folder (or with a full path) with its arguments (the last NULL). What it says goes to files
+ * that fixture_said() reads. */
 pid_t fixture_start(const char *program, const char *const *arguments);
 /* Waits for its end. Exit status, 128 + signal, or -1 after that many seconds. */
 int fixture_end(pid_t pid, double seconds);

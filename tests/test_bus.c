@@ -76,10 +76,10 @@ static void subscribe(enum bus_delivery delivery)
 	ck_assert_int_eq(bus_subscribe(bus, "STATE", &bus_table_state, delivery, on_state, &handled), 0);
 }
 
-/* ---- types ---------------------------------------------------------------------------------------------------------- */
+/* ---- types ------------------------------------------------------------------------------------------------------- */
 
-static const struct bus_type *const types[] = {&bus_table_state, &bus_plan_request, &bus_plan, &bus_draw_list, &bus_animation,
-					       &bus_command, &bus_status};
+static const struct bus_type *const types[] = {&bus_table_state, &bus_plan_request, &bus_plan,	&bus_draw_list,
+					       &bus_animation,	 &bus_command,	    &bus_status};
 enum { TYPE_COUNT = sizeof types / sizeof types[0] };
 
 /* The hash that begins every message of a type. */
@@ -125,7 +125,8 @@ START_TEST(types_tell_each_other_apart)
 		for (int b = 0; b < TYPE_COUNT; b++) {
 			void *message = calloc(1, types[b]->size);
 			if (a != b)
-				ck_assert_msg(types[b]->decode(bytes, 0, size, message) < 0, "%s as %s", types[a]->name, types[b]->name);
+				ck_assert_msg(types[b]->decode(bytes, 0, size, message) < 0, "%s as %s", types[a]->name,
+					      types[b]->name);
 			free(message);
 		}
 		free(bytes);
@@ -133,7 +134,7 @@ START_TEST(types_tell_each_other_apart)
 }
 END_TEST
 
-/* ---- bad messages --------------------------------------------------------------------------------------------------- */
+/* ---- bad messages ------------------------------------------------------------------------------------------------ */
 
 START_TEST(truncated_messages_are_counted_and_ignored)
 {
@@ -239,7 +240,7 @@ START_TEST(images_larger_than_the_limit_are_refused_unread)
 }
 END_TEST
 
-/* ---- delivery ------------------------------------------------------------------------------------------------------- */
+/* ---- delivery ---------------------------------------------------------------------------------------------------- */
 
 START_TEST(each_comes_in_order)
 {
@@ -350,7 +351,7 @@ START_TEST(any_thread_may_publish)
 }
 END_TEST
 
-/* ---- texts ---------------------------------------------------------------------------------------------------------- */
+/* ---- texts ------------------------------------------------------------------------------------------------------- */
 
 START_TEST(texts_are_cut_and_cleaned)
 {
@@ -361,7 +362,7 @@ START_TEST(texts_are_cut_and_cleaned)
 	ck_assert_int_eq(memcmp(bytes, "ab\0\0\0\0\0", 8), 0);
 	bus_set_text(bytes, sizeof bytes, "abcdefghijk");
 	ck_assert_int_eq(memcmp(bytes, "abcdefg", 8), 0);
-	memcpy(bytes, "a\nb\x7f\x1b[31m", 8);	/* no end, and what a terminal would obey */
+	memcpy(bytes, "a\nb\x7f\x1b[31m", 8); /* no end, and what a terminal would obey */
 	bus_text(text, sizeof text, bytes, sizeof bytes);
 	ck_assert_str_eq(text, "a?b??[31");
 	bus_text(text, 4, bytes, sizeof bytes);
@@ -382,7 +383,7 @@ START_TEST(the_environment_overrides_the_address)
 }
 END_TEST
 
-/* ---- the real bus --------------------------------------------------------------------------------------------------- */
+/* ---- the real bus ------------------------------------------------------------------------------------------------ */
 
 static struct bus *other;
 

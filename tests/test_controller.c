@@ -10,7 +10,7 @@
 
 /* The controller fed with messages as they come from the bus; nothing else is real. 30 frames a second. */
 enum { FRAME_US = 33333, MANY = 60 };
-static struct config config;		/* too large for the stack */
+static struct config config; /* too large for the stack */
 static struct controller c;
 static billiard_table_state_t state;
 static double now;
@@ -85,7 +85,12 @@ static billiard_plan_t *answer(int8_t status, double angle)
 	for (int i = 0; i < 2; i++) {
 		plan.entries[i].shot_count = 1;
 		billiard_plan_shot_t *s = &plan.entries[i].shots[0];
-		*s = (billiard_plan_shot_t){.angle = angle + i, .speed = 1, .target = 1, .pocket = (int16_t)i, .chain_count = 2, .chain = {0, 1, -1, -1}};
+		*s = (billiard_plan_shot_t){.angle = angle + i,
+					    .speed = 1,
+					    .target = 1,
+					    .pocket = (int16_t)i,
+					    .chain_count = 2,
+					    .chain = {0, 1, -1, -1}};
 		for (int k = 0; k < plan.ball_count; k++) {
 			s->start_x[k] = c.request.balls[k].x;
 			s->start_y[k] = c.request.balls[k].y;
@@ -93,9 +98,13 @@ static billiard_plan_t *answer(int8_t status, double angle)
 		}
 		s->keyframe_first = plan.keyframe_count;
 		s->keyframe_count = 1;
-		plan.keyframes[plan.keyframe_count++] =
-			(billiard_keyframe_t){.end = 2, .phase = BALL_ROLLING, .event = EVENT_STRIKE, .x = s->start_x[0], .y = s->start_y[0],
-					      .vx = cos(s->angle), .vy = sin(s->angle)};
+		plan.keyframes[plan.keyframe_count++] = (billiard_keyframe_t){.end = 2,
+									      .phase = BALL_ROLLING,
+									      .event = EVENT_STRIKE,
+									      .x = s->start_x[0],
+									      .y = s->start_y[0],
+									      .vx = cos(s->angle),
+									      .vy = sin(s->angle)};
 	}
 	return &plan;
 }
@@ -119,7 +128,7 @@ static void proposed(void)
 	ck_assert_int_eq(c.fsm.state, FSM_SHOWING);
 }
 
-/* ---- the way of a proposal ------------------------------------------------------------------------------------------ */
+/* ---- the way of a proposal --------------------------------------------------------------------------------------- */
 
 START_TEST(a_resting_table_is_asked_for_once)
 {
@@ -191,7 +200,7 @@ START_TEST(improved_answers_replace_repeated_ones_do_not)
 	ck_assert(controller_plan(&c, plan, now));
 	ck_assert_double_eq(c.plan.entries[0].shots[0].angle, 0.9);
 	plan = answer(PLAN_MESSAGE_OK, 0.2);
-	plan->sequence = 2;	/* late */
+	plan->sequence = 2; /* late */
 	ck_assert(controller_plan(&c, plan, now));
 	ck_assert_double_eq(c.plan.entries[0].shots[0].angle, 0.9);
 	ck_assert_int_eq(c.proposals, 1);
@@ -216,7 +225,7 @@ START_TEST(no_plan_is_said_on_the_table)
 }
 END_TEST
 
-/* ---- lost, doubled, late, malformed --------------------------------------------------------------------------------- */
+/* ---- lost, doubled, late, malformed ------------------------------------------------------------------------------ */
 
 START_TEST(a_lost_request_or_answer_is_repeated)
 {
@@ -245,7 +254,7 @@ END_TEST
 
 START_TEST(late_and_foreign_answers_are_ignored)
 {
-	ck_assert(!controller_plan(&c, answer(PLAN_MESSAGE_OK, 0.5), now));	/* nothing was asked: id 0 */
+	ck_assert(!controller_plan(&c, answer(PLAN_MESSAGE_OK, 0.5), now)); /* nothing was asked: id 0 */
 	frames(MANY);
 	billiard_plan_t *plan = answer(PLAN_MESSAGE_OK, 0.5);
 	plan->request_id--;
@@ -277,8 +286,9 @@ START_TEST(malformed_frames_change_nothing)
 	billiard_table_state_t good = state;
 	ck_assert_ptr_nonnull(before);
 	*before = c;
-#define BAD(field, value) \
-	(state = good, state.utime += FRAME_US, state.field = (value), ck_assert_msg(!controller_state(&c, &state, now), #field " = " #value))
+#define BAD(field, value)                                                                                              \
+	(state = good, state.utime += FRAME_US, state.field = (value),                                                 \
+	 ck_assert_msg(!controller_state(&c, &state, now), #field " = " #value))
 	BAD(ball_count, -1);
 	BAD(ball_count, 23);
 	BAD(ball_count, INT32_MAX);
@@ -301,7 +311,7 @@ START_TEST(a_clock_that_was_set_back_does_not_stop_it)
 {
 	proposed();
 	int64_t id = c.request.id;
-	state.utime = 5;	/* or another recording */
+	state.utime = 5; /* or another recording */
 	frames(3);
 	shot();
 	frames(MANY);
@@ -378,7 +388,7 @@ START_TEST(overlaps_of_a_camera_are_settled_in_the_request)
 }
 END_TEST
 
-/* ---- commands ------------------------------------------------------------------------------------------------------- */
+/* ---- commands ---------------------------------------------------------------------------------------------------- */
 
 START_TEST(pause_and_resume)
 {
@@ -423,7 +433,8 @@ START_TEST(the_animation_stops_seeks_and_restarts)
 	ck_assert_double_eq(c.animation.position, 2);
 	command("animation-seek", "-99");
 	ck_assert_double_eq(c.animation.position, 0);
-	ck_assert(!command("animation-seek", "nan") && !command("animation-seek", "") && !command("animation-nonsense", ""));
+	ck_assert(!command("animation-seek", "nan") && !command("animation-seek", "") &&
+		  !command("animation-nonsense", ""));
 	command("animation-stop", "");
 	now += 0.25;
 	command("animation-seek", "0.5");
@@ -451,7 +462,7 @@ START_TEST(commands_for_others_are_left_to_them)
 }
 END_TEST
 
-/* ---- everything at once --------------------------------------------------------------------------------------------- */
+/* ---- everything at once ------------------------------------------------------------------------------------------ */
 
 static uint64_t hash(uint64_t h, const void *data, size_t size)
 {
@@ -461,12 +472,13 @@ static uint64_t hash(uint64_t h, const void *data, size_t size)
 	return h;
 }
 
-/* A long run with losses, repetitions, spoiled numbers, hands and commands. Never a crash, nothing invalid goes out, and the same run
- * gives the same messages. */
+/* A long run with losses, repetitions, spoiled numbers, hands and commands. Never a crash, nothing invalid goes out,
+ * and the same run gives the same messages. */
 static uint64_t storm(uint64_t seed)
 {
-	static const char *const commands[] = {"pause", "resume", "next", "previous", "halo", "paths", "table", "info", "infinity", "animation",
-					       "animation-stop", "animation-restart", "cancel", "x"};
+	static const char *const commands[] = {
+		"pause",    "resume",	 "next",	   "previous",		"halo",	  "paths", "table", "info",
+		"infinity", "animation", "animation-stop", "animation-restart", "cancel", "x"};
 	struct random random = {seed};
 	uint64_t h = 1469598103934665603u;
 	setup();
@@ -483,7 +495,8 @@ static uint64_t storm(uint64_t seed)
 		else if (what == 4)
 			state.calibration = (int8_t)(random_u64(&random) % 3);
 		else if (what == 5)
-			((uint8_t *)&state.balls)[random_u64(&random) % sizeof state.balls[0]] ^= (uint8_t)random_u64(&random);
+			((uint8_t *)&state.balls)[random_u64(&random) % sizeof state.balls[0]] ^=
+				(uint8_t)random_u64(&random);
 		else if (what == 6)
 			place(0, COLOUR_WHITE, random_in(&random, -0.9, 0.9), random_in(&random, -0.4, 0.4));
 		frame();

@@ -158,7 +158,7 @@ START_TEST(sources_that_are_none_are_errors_at_once)
 	static const char *const bad[] = {"dir:/nowhere", "file:/nowhere.avi", "telepathy:", "", "dir:"};
 	struct frame_source_def d = def(10, 0);
 	char err[300] = "";
-	ck_assert_int_lt(frame_source_create(&source, &d, err, sizeof err), 0);	/* empty folder */
+	ck_assert_int_lt(frame_source_create(&source, &d, err, sizeof err), 0); /* empty folder */
 	ck_assert(!source && strstr(err, folder));
 	for (size_t i = 0; i < sizeof bad / sizeof bad[0]; i++) {
 		d.source = bad[i];

@@ -21,8 +21,8 @@ static unsigned step(enum fsm_state state, enum fsm_event event, enum fsm_state 
 	return actions;
 }
 
-#define FOR_ALL_CELLS(s, e)                                                                                                 \
-	for (enum fsm_state s = 0; s < FSM_STATE_COUNT; s++)                                                               \
+#define FOR_ALL_CELLS(s, e)                                                                                            \
+	for (enum fsm_state s = 0; s < FSM_STATE_COUNT; s++)                                                           \
 		for (enum fsm_event e = 0; e < FSM_EVENT_COUNT; e++)
 
 START_TEST(every_state_is_reached_from_the_first)
@@ -75,7 +75,8 @@ START_TEST(planning_is_entered_only_with_a_request)
 		enum fsm_state next;
 		unsigned actions = step(s, e, &next);
 		if (fsm_written(s, e) && next == FSM_PLANNING)
-			ck_assert_msg(actions & (FSM_DO_REQUEST | FSM_DO_REPEAT), "%s, %s", fsm_state_name(s), fsm_event_name(e));
+			ck_assert_msg(actions & (FSM_DO_REQUEST | FSM_DO_REPEAT), "%s, %s", fsm_state_name(s),
+				      fsm_event_name(e));
 		else
 			ck_assert(!(actions & (FSM_DO_REQUEST | FSM_DO_REPEAT)));
 		if (actions & FSM_DO_REPEAT)
@@ -89,14 +90,16 @@ START_TEST(planning_is_left_without_an_answer_only_with_a_cancel)
 	FOR_ALL_CELLS(s, e) {
 		enum fsm_state next;
 		unsigned actions = step(s, e, &next);
-		bool answer = e == FSM_READY || e == FSM_NONE, left = next != FSM_PLANNING || (actions & FSM_DO_REQUEST);
+		bool answer = e == FSM_READY || e == FSM_NONE,
+		     left = next != FSM_PLANNING || (actions & FSM_DO_REQUEST);
 		bool wanted = s == FSM_PLANNING && left && !answer;
 		ck_assert_msg(wanted == !!(actions & FSM_DO_CANCEL), "%s, %s", fsm_state_name(s), fsm_event_name(e));
 	}
 }
 END_TEST
 
-/* The picture: what is shown in SHOWING goes when SHOWING is left, and is never left without being replaced or cleared. */
+/* The picture: what is shown in SHOWING goes when SHOWING is left, and is never left without being replaced or cleared.
+ */
 START_TEST(a_proposal_never_stays_on_a_table_that_changed)
 {
 	FOR_ALL_CELLS(s, e) {

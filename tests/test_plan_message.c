@@ -13,7 +13,7 @@
 #include "scenes.h"
 
 enum { ERR_SIZE = 96 };
-static struct config config;		/* too large for the stack */
+static struct config config; /* too large for the stack */
 static struct trace_entry scratch[PLAN_TRACE_MAX];
 static billiard_plan_request_t request;
 static billiard_plan_t plan;
@@ -24,13 +24,30 @@ static struct plan_result result;
 static void make_request(void)
 {
 	request = (billiard_plan_request_t){
-		.utime = 1, .id = 77, .ball_count = 5, .target_kind = TARGET_COLOUR, .target_colour = COLOUR_RED, .target_ball = 2,
-		.on = ON_COLOUR, .in_hand = 1, .depth = 2, .rails = 1, .max_balls = 2, .speeds = 2, .plans = 7, .budget_nodes = 3000,
+		.utime = 1,
+		.id = 77,
+		.ball_count = 5,
+		.target_kind = TARGET_COLOUR,
+		.target_colour = COLOUR_RED,
+		.target_ball = 2,
+		.on = ON_COLOUR,
+		.in_hand = 1,
+		.depth = 2,
+		.rails = 1,
+		.max_balls = 2,
+		.speeds = 2,
+		.plans = 7,
+		.budget_nodes = 3000,
 		.budget_s = 0.5,
 	};
-	static const struct { enum ball_colour colour; vec2 at; const char *name; } ball[] = {
-		{COLOUR_WHITE, {-0.3, 0}, "WHITE0"}, {COLOUR_RED, {0.35, 0.2}, "RED1"}, {COLOUR_RED, {0.6, -0.3}, "RED2"},
-		{COLOUR_BLACK, {0.8938, 0}, "BLACK0"}, {COLOUR_BLUE, {0, 0.1}, "BLUE0"},
+	static const struct {
+		enum ball_colour colour;
+		vec2 at;
+		const char *name;
+	} ball[] = {
+		{COLOUR_WHITE, {-0.3, 0}, "WHITE0"}, {COLOUR_RED, {0.35, 0.2}, "RED1"},
+		{COLOUR_RED, {0.6, -0.3}, "RED2"},   {COLOUR_BLACK, {0.8938, 0}, "BLACK0"},
+		{COLOUR_BLUE, {0, 0.1}, "BLUE0"},
 	};
 	for (int i = 0; i < 5; i++) {
 		struct ball b = ball_at(ball[i].colour, ball[i].at);
@@ -71,7 +88,7 @@ static void done(void)
 	planner = NULL;
 }
 
-/* ---- balls, requests ------------------------------------------------------------------------------------------------ */
+/* ---- balls, requests --------------------------------------------------------------------------------------------- */
 
 START_TEST(balls_keep_every_field)
 {
@@ -83,8 +100,8 @@ START_TEST(balls_keep_every_field)
 	ck_assert_str_eq((const char *)message.name, "PINK0");
 	ck_assert_int_eq(message.track, 42);
 	ck_assert(ball_from_message(&back, &message));
-	ck_assert(back.colour == ball.colour && back.phase == ball.phase && back.pos.x == ball.pos.x && back.pos.y == ball.pos.y &&
-		  back.vel.x == ball.vel.x && back.vel.y == ball.vel.y);
+	ck_assert(back.colour == ball.colour && back.phase == ball.phase && back.pos.x == ball.pos.x &&
+		  back.pos.y == ball.pos.y && back.vel.x == ball.vel.x && back.vel.y == ball.vel.y);
 	ball_to_message(&message, &ball, "A NAME THAT IS TOO LONG", 1);
 	ck_assert_str_eq((const char *)message.name, "A NAME THAT IS ");
 }
@@ -123,8 +140,10 @@ START_TEST(requests_keep_every_field)
 	struct plan_request out;
 	char err[ERR_SIZE] = "";
 	ck_assert_msg(plan_request_from_message(&out, &request, &config.table, err, sizeof err) == 0, "%s", err);
-	ck_assert(out.ball_count == 5 && out.target == TARGET_COLOUR && out.target_colour == COLOUR_RED && out.target_ball == 2);
-	ck_assert(out.state.on == ON_COLOUR && out.state.in_hand && out.depth == 2 && out.rails == 1 && out.balls == 2 && out.speeds == 2);
+	ck_assert(out.ball_count == 5 && out.target == TARGET_COLOUR && out.target_colour == COLOUR_RED &&
+		  out.target_ball == 2);
+	ck_assert(out.state.on == ON_COLOUR && out.state.in_hand && out.depth == 2 && out.rails == 1 &&
+		  out.balls == 2 && out.speeds == 2);
 	ck_assert(out.plans == 7 && out.budget.nodes == 3000 && out.budget.seconds == 0.5);
 	for (int i = 0; i < 5; i++) {
 		ck_assert_int_eq(out.ball[i].colour, request.balls[i].colour);
@@ -140,7 +159,8 @@ static void refused(const billiard_plan_request_t *bad, const char *what)
 	char err[ERR_SIZE] = "";
 	memset(&out, 0x5a, sizeof out);
 	memcpy(&before, &out, sizeof out);
-	ck_assert_msg(plan_request_from_message(&out, bad, &config.table, err, sizeof err) == -EINVAL, "%s was accepted", what);
+	ck_assert_msg(plan_request_from_message(&out, bad, &config.table, err, sizeof err) == -EINVAL,
+		      "%s was accepted", what);
 	ck_assert_msg(err[0] != '\0', "%s: no reason", what);
 	ck_assert_msg(memcmp(&out, &before, sizeof out) == 0, "%s: output touched", what);
 }
@@ -195,7 +215,7 @@ START_TEST(malformed_requests_are_refused_with_a_reason)
 }
 END_TEST
 
-/* ---- plans ---------------------------------------------------------------------------------------------------------- */
+/* ---- plans ------------------------------------------------------------------------------------------------------- */
 
 START_TEST(answers_name_their_request)
 {
@@ -223,7 +243,8 @@ END_TEST
 
 static void same_shot(const billiard_plan_shot_t *m, const struct plan_shot *s)
 {
-	ck_assert(m->angle == s->shot.angle && m->speed == s->shot.speed && m->side == s->shot.side && m->follow == s->shot.follow);
+	ck_assert(m->angle == s->shot.angle && m->speed == s->shot.speed && m->side == s->shot.side &&
+		  m->follow == s->shot.follow);
 	ck_assert(m->elevation == s->shot.elevation && m->target == s->target && m->pocket == s->pocket);
 	ck_assert(m->chain_count == s->chain_count && m->rails == s->rails && m->potted_count == s->potted_count);
 	ck_assert(m->points == s->points && m->foul == s->foul && m->cost == s->cost && (uint64_t)m->hash == s->hash);
@@ -242,7 +263,8 @@ START_TEST(plans_keep_every_field)
 {
 	ck_assert_int_eq(plan.status, PLAN_MESSAGE_OK);
 	ck_assert_int_eq(plan.found, result.plan_count);
-	ck_assert_int_eq(plan.entry_count, result.plan_count < PLAN_MESSAGE_ENTRIES ? result.plan_count : PLAN_MESSAGE_ENTRIES);
+	ck_assert_int_eq(plan.entry_count,
+			 result.plan_count < PLAN_MESSAGE_ENTRIES ? result.plan_count : PLAN_MESSAGE_ENTRIES);
 	ck_assert(plan.nodes == (int64_t)result.nodes && plan.sims == (int64_t)result.sims);
 	for (int i = 0; i < plan.entry_count; i++) {
 		ck_assert(plan.entries[i].cost == result.plan[i].cost);
@@ -363,22 +385,23 @@ START_TEST(malformed_plans_are_refused)
 {
 	billiard_plan_t *bad = malloc(sizeof *bad);
 	ck_assert_ptr_nonnull(bad);
-#define BAD(field, value) (*bad = plan, bad->field = (value), ck_assert_msg(!plan_message_check(bad, &config.table), #field " = " #value))
+#define BAD(field, value)                                                                                              \
+	(*bad = plan, bad->field = (value), ck_assert_msg(!plan_message_check(bad, &config.table), #field " = " #value))
 	BAD(request_id, 0);
 	BAD(status, -1);
 	BAD(status, 4);
 	BAD(ball_count, -1);
 	BAD(ball_count, 23);
 	BAD(ball_count, INT32_MAX);
-	BAD(ball_count, 1);		/* targets and keyframes name others */
+	BAD(ball_count, 1); /* targets and keyframes name others */
 	BAD(colours[1], 9);
 	BAD(colours[1], -1);
-	BAD(entry_count, 0);		/* "found", but none there */
+	BAD(entry_count, 0); /* "found", but none there */
 	BAD(entry_count, -1);
 	BAD(entry_count, 6);
 	BAD(keyframe_count, -1);
 	BAD(keyframe_count, 769);
-	BAD(keyframe_count, 1);		/* shots refer to more */
+	BAD(keyframe_count, 1); /* shots refer to more */
 	BAD(entries[0].shot_count, 0);
 	BAD(entries[0].shot_count, 4);
 	BAD(entries[0].shot_count, -1);
@@ -456,7 +479,8 @@ START_TEST(spoiled_plans_are_refused_or_harmless)
 		memcpy(bytes, good, (size_t)size);
 		/* Most spoils go where the counts are and the first shots; the hash in front is left alone. */
 		for (int n = 0; n < 1 + round % 3; n++)
-			bytes[8 + random_u64(&random) % (round % 2 ? 900 : (unsigned)size - 8)] = (uint8_t)random_u64(&random);
+			bytes[8 + random_u64(&random) % (round % 2 ? 900 : (unsigned)size - 8)] =
+				(uint8_t)random_u64(&random);
 		if (bus_plan.decode(bytes, 0, size, back) != size)
 			continue;
 		if (!plan_message_check(back, &config.table) || back->entry_count == 0)
@@ -478,7 +502,7 @@ START_TEST(spoiled_plans_are_refused_or_harmless)
 }
 END_TEST
 
-/* ---- animations ----------------------------------------------------------------------------------------------------- */
+/* ---- animations -------------------------------------------------------------------------------------------------- */
 
 START_TEST(an_animation_is_one_shot_of_the_plan)
 {
@@ -488,14 +512,21 @@ START_TEST(an_animation_is_one_shot_of_the_plan)
 	ck_assert(plan_message_animation_check(&a));
 	ck_assert(a.plan_id == plan.request_id && a.run && a.rate == 1 && a.ball_count == plan.ball_count);
 	ck_assert_int_eq(a.keyframe_count, shot->keyframe_count);
-	ck_assert_int_eq(memcmp(a.keyframes, &plan.keyframes[shot->keyframe_first], (size_t)a.keyframe_count * sizeof a.keyframes[0]), 0);
+	ck_assert_int_eq(memcmp(a.keyframes, &plan.keyframes[shot->keyframe_first],
+				(size_t)a.keyframe_count * sizeof a.keyframes[0]),
+			 0);
 	ck_assert(plan_message_same_motion(&a, &a));
 }
 END_TEST
 
 START_TEST(an_animation_runs_pauses_and_begins_again)
 {
-	billiard_animation_t a = {.run = 1, .rate = 2, .pause = 1, .ball_count = 1, .keyframe_count = 2, .keyframes = {{.end = 4}, {.end = 3}}};
+	billiard_animation_t a = {.run = 1,
+				  .rate = 2,
+				  .pause = 1,
+				  .ball_count = 1,
+				  .keyframe_count = 2,
+				  .keyframes = {{.end = 4}, {.end = 3}}};
 	ck_assert_double_eq(plan_message_animation_length(&a), 4);
 	static const double at[][2] = {{0, 0}, {1, 2}, {2, 4}, {2.4, 4}, {2.5, 0}, {3, 1}, {5, 0}};
 	for (size_t i = 0; i < sizeof at / sizeof at[0]; i++)
@@ -513,7 +544,7 @@ START_TEST(malformed_animations_are_refused)
 {
 	static billiard_animation_t good, bad;
 	plan_message_animation(&good, &plan, 0, 0);
-#define BAD_ANIMATION(field, value) \
+#define BAD_ANIMATION(field, value)                                                                                    \
 	(bad = good, bad.field = (value), ck_assert_msg(!plan_message_animation_check(&bad), #field " = " #value))
 	BAD_ANIMATION(keyframe_count, -1);
 	BAD_ANIMATION(keyframe_count, 769);

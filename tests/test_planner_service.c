@@ -11,7 +11,7 @@
 #include "harness.h"
 #include "scenes.h"
 
-static struct config config;	/* too large for the stack */
+static struct config config; /* too large for the stack */
 static struct planner_service *service;
 static billiard_plan_request_t request;
 static billiard_plan_t answer, last;
@@ -33,8 +33,13 @@ static void teardown(void)
 /* quick: done in milliseconds; else it searches until it is told to stop. */
 static billiard_plan_request_t *make(int64_t id, bool quick)
 {
-	static const struct { enum ball_colour colour; vec2 at; } ball[] = {
-		{COLOUR_WHITE, {-0.3, 0}}, {COLOUR_RED, {0.35, 0.2}}, {COLOUR_RED, {0.6, -0.3}}, {COLOUR_BLUE, {0, 0.1}}};
+	static const struct {
+		enum ball_colour colour;
+		vec2 at;
+	} ball[] = {{COLOUR_WHITE, {-0.3, 0}},
+		    {COLOUR_RED, {0.35, 0.2}},
+		    {COLOUR_RED, {0.6, -0.3}},
+		    {COLOUR_BLUE, {0, 0.1}}};
 	struct ball rack[SCENE_RACK_COUNT];
 	request = (billiard_plan_request_t){.id = id, .depth = 1, .max_balls = 1, .speeds = 1, .plans = 3};
 	if (!quick) {
@@ -160,7 +165,7 @@ START_TEST(asked_again_while_it_runs_it_goes_on)
 {
 	planner_service_request(service, make(5, false));
 	planner_service_request(service, make(5, false));
-	planner_service_cancel(service, 4);	/* another one's */
+	planner_service_cancel(service, 4); /* another one's */
 	struct planner_service_figures f;
 	planner_service_figures(service, &f);
 	ck_assert(f.requests == 1 && f.cancelled == 0);
@@ -237,7 +242,8 @@ START_TEST(bursts_are_survived)
 		if (what < 3)
 			planner_service_request(service, make(++id, what));
 		else if (what == 3)
-			planner_service_request(service, make(id > 2 ? id - (int64_t)(random_u64(&random) % 3) : 1, true));
+			planner_service_request(service,
+						make(id > 2 ? id - (int64_t)(random_u64(&random) % 3) : 1, true));
 		else if (what == 4)
 			planner_service_cancel(service, id);
 		else
@@ -259,7 +265,7 @@ START_TEST(it_can_be_destroyed_at_any_moment)
 		struct timespec wait = {0, i * 400000};
 		planner_service_request(service, make(i + 1, false));
 		if (i % 3)
-			nanosleep(&wait, NULL);	/* a different point of the search each time */
+			nanosleep(&wait, NULL); /* a different point of the search each time */
 		teardown();
 		ck_assert_msg(planner_service_create(&service, &config, err, sizeof err) == 0, "%s", err);
 	}

@@ -12,7 +12,7 @@
 #include "harness.h"
 
 /* All on memq://: what a process publishes it hears itself. */
-static struct config config;	/* too large for the stack */
+static struct config config; /* too large for the stack */
 static struct process process;
 static char said[2000];
 static int64_t statuses;
@@ -85,14 +85,14 @@ START_TEST(bad_options_give_one_line)
 	bad_use("billiard-planner", ARGV("--nonsense"));
 	bad_use("billiard-planner", ARGV("-c"));
 	bad_use("billiard-planner", ARGV("extra"));
-	bad_use("billiard-planner", ARGV("--source", "dir:x"));	/* vision's */
+	bad_use("billiard-planner", ARGV("--source", "dir:x")); /* vision's */
 	static char *const holds[] = {"0", "-1", "x", "1x", "nan", "inf", "4000", ""};
 	for (size_t i = 0; i < sizeof holds / sizeof holds[0]; i++)
 		bad_use("billiard-vision", ARGV("--hold", holds[i]));
 }
 END_TEST
 
-/* ---- status --------------------------------------------------------------------------------------------------------- */
+/* ---- status ------------------------------------------------------------------------------------------------------ */
 
 static bool on_status(void *context, const void *message)
 {
@@ -161,7 +161,7 @@ START_TEST(metrics_are_named_once_and_never_too_many)
 }
 END_TEST
 
-/* ---- loop ----------------------------------------------------------------------------------------------------------- */
+/* ---- loop -------------------------------------------------------------------------------------------------------- */
 
 static int ticks;
 static int on_tick(sd_event_source *source, uint64_t usec, void *context)
@@ -174,7 +174,7 @@ static int on_tick(sd_event_source *source, uint64_t usec, void *context)
 static void describe(void *context, struct process *p)
 {
 	ck_assert_ptr_eq(context, &ticks);
-	process_state(p, "described");	/* must not go round in circles */
+	process_state(p, "described"); /* must not go round in circles */
 	process_metric(p, "ticks", "1", ticks);
 }
 
@@ -233,7 +233,9 @@ START_TEST(failures_of_the_start_give_one_line)
 		process_finish(&other);
 		stop_listening();
 		ck_assert_int_lt(r, 0);
-		ck_assert_msg(strchr(said, '\n') == said + strlen(said) - 1 && strncmp(said, "billiard-test: ", 15) == 0, "%s", said);
+		ck_assert_msg(strchr(said, '\n') == said + strlen(said) - 1 &&
+				      strncmp(said, "billiard-test: ", 15) == 0,
+			      "%s", said);
 	}
 }
 END_TEST

@@ -1,4 +1,5 @@
-/* A demo recorded with lcm-logger and played again with lcm-logplayer to vision, infinity and planner: the same proposals come out. */
+/* A demo recorded with lcm-logger and played again with lcm-logplayer to vision, infinity and planner: the same
+ * proposals come out. */
 #include <math.h>
 #include <signal.h>
 #include <stdio.h>
@@ -19,8 +20,8 @@ static char conf[128];
 static struct proposal {
 	int64_t id;
 	int colour, pocket;
-	vec2 cue, target;	/* m */
-	double angle, speed;	/* rad, m/s */
+	vec2 cue, target;    /* m */
+	double angle, speed; /* rad, m/s */
 } proposal[PROPOSAL_MAX];
 static int proposal_count;
 
@@ -36,8 +37,13 @@ static bool on_plan(void *context, const void *message)
 			return true;
 	ck_assert_int_lt(proposal_count, PROPOSAL_MAX);
 	int cue = s->chain[0];
-	proposal[proposal_count++] = (struct proposal){plan->request_id, plan->colours[s->target], s->pocket,
-		{s->start_x[cue], s->start_y[cue]}, {s->start_x[s->target], s->start_y[s->target]}, s->angle, s->speed};
+	proposal[proposal_count++] = (struct proposal){plan->request_id,
+						       plan->colours[s->target],
+						       s->pocket,
+						       {s->start_x[cue], s->start_y[cue]},
+						       {s->start_x[s->target], s->start_y[s->target]},
+						       s->angle,
+						       s->speed};
 	return true;
 }
 
@@ -49,7 +55,8 @@ static void write_conf(void)
 	snprintf(conf, sizeof conf, "%s", fixture_file("table.conf"));
 	snprintf(command, sizeof command,
 		 "sed -e 's#\"colours.json\"#\"%s/config/colours.json\"#' -e 's/time_scale = [0-9.]*/time_scale = 3/' "
-		 "-e 's/budget_nodes = [0-9]*/budget_nodes = 3000/' -e 's/budget = [0-9.]*/budget = 0.0/' config/thesis-table.conf >%s",
+		 "-e 's/budget_nodes = [0-9]*/budget_nodes = 3000/' -e 's/budget = [0-9.]*/budget = 0.0/' "
+		 "config/thesis-table.conf >%s",
 		 cwd, conf);
 	ck_assert_int_eq(system(command), 0);
 }
@@ -95,7 +102,8 @@ static bool log_is_there(void)
 static void record(const char *log)
 {
 	const char *logger[] = {"-q", "-f", "-c", "CAMERA", log, NULL};
-	const char *demo[] = {"demo", "-c", conf, "--shots", "3", "--out", NULL, "--position", "config/demo-position.txt", NULL};
+	const char *demo[] = {
+		"demo", "-c", conf, "--shots", "3", "--out", NULL, "--position", "config/demo-position.txt", NULL};
 	char out[128];
 	snprintf(out, sizeof out, "%s", fixture_file("demo"));
 	demo[6] = out;
@@ -116,7 +124,8 @@ static void replay(const char *log)
 		pid[i] = fixture_start(services[i], arguments);
 	}
 	ck_assert(fixture_wait(bus, all_there, 10));
-	wait_end(fixture_start("/usr/bin/lcm-logplayer", (const char *[]){"-e", "CAMERA", log, NULL}), 120, "lcm-logplayer");
+	wait_end(fixture_start("/usr/bin/lcm-logplayer", (const char *[]){"-e", "CAMERA", log, NULL}), 120,
+		 "lcm-logplayer");
 	for (int i = 0; i < 3; i++) {
 		kill(pid[i], SIGTERM);
 		wait_end(pid[i], 3, services[i]);
@@ -126,9 +135,11 @@ static void replay(const char *log)
 static void compare(const struct proposal *a, const struct proposal *b, int number)
 {
 	double angle = fabs(remainder(a->angle - b->angle, 2 * 3.141592653589793)) * 57.29577951308232;
-	printf("replay: shot %d: %s -> pocket %d, cue ball %.3f mm apart, angle %.4f deg apart, speed %.2f %% apart%s\n", number,
-	       ball_colour_name((enum ball_colour)a->colour), a->pocket, 1e3 * vec2_dist(a->cue, b->cue), angle,
-	       100 * fabs(b->speed / a->speed - 1), a->angle == b->angle && a->speed == b->speed ? " (the same bits)" : "");
+	printf("replay: shot %d: %s -> pocket %d, cue ball %.3f mm apart, angle %.4f deg apart, speed %.2f %% "
+	       "apart%s\n",
+	       number, ball_colour_name((enum ball_colour)a->colour), a->pocket, 1e3 * vec2_dist(a->cue, b->cue), angle,
+	       100 * fabs(b->speed / a->speed - 1),
+	       a->angle == b->angle && a->speed == b->speed ? " (the same bits)" : "");
 	ck_assert_int_eq(a->colour, b->colour);
 	ck_assert_int_eq(a->pocket, b->pocket);
 	ck_assert_double_lt(vec2_dist(a->target, b->target), 0.003);

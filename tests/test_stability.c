@@ -8,7 +8,7 @@
 #include "scenes.h"
 
 enum { STILL_FRAMES = 15, FRAME_RATE = 30 };
-static const double STILL = 0.0005;	/* m */
+static const double STILL = 0.0005; /* m */
 static struct stability s;
 
 static void setup(void)
@@ -149,7 +149,7 @@ START_TEST(an_arm_over_the_bed_is_neither_rest_nor_loss)
 	for (int i = 0; i < 50; i++) {
 		struct layout seen = layout;
 		if (i % 7 == 3) {
-			seen.ball[0] = seen.ball[--seen.count];	/* it covers the cue ball at times */
+			seen.ball[0] = seen.ball[--seen.count]; /* it covers the cue ball at times */
 			seen.track[0] = seen.track[seen.count];
 		}
 		ck_assert_int_eq(stability_frame(&s, &seen, true), STABILITY_UNSURE);
@@ -237,14 +237,15 @@ START_TEST(layouts_differ_by_place_colour_and_number)
 }
 END_TEST
 
-/* ---- settling ------------------------------------------------------------------------------------------------------- */
+/* ---- settling ---------------------------------------------------------------------------------------------------- */
 
 static void check_settled(const struct layout *layout, const struct table *table, const char *what)
 {
 	double r = table->ball_radius;
 	for (int i = 0; i < layout->count; i++) {
 		vec2 p = layout->ball[i].pos;
-		ck_assert_msg(fabs(p.x) <= table->length / 2 - r && fabs(p.y) <= table->width / 2 - r, "%s: ball %d is off the bed", what, i);
+		ck_assert_msg(fabs(p.x) <= table->length / 2 - r && fabs(p.y) <= table->width / 2 - r,
+			      "%s: ball %d is off the bed", what, i);
 		for (int j = 0; j < i; j++) {
 			double overlap = 2 * r - vec2_dist(p, layout->ball[j].pos);
 			ck_assert_msg(overlap <= 1e-9, "%s: balls %d and %d overlap by %g m", what, i, j, overlap);
@@ -255,7 +256,8 @@ static void check_settled(const struct layout *layout, const struct table *table
 static void add_noise(struct layout *layout, struct random *random, double size)
 {
 	for (int i = 0; i < layout->count; i++)
-		layout->ball[i].pos = vec2_madd(layout->ball[i].pos, random_in(random, 0, size), vec2_from_angle(random_in(random, 0, 6.2832)));
+		layout->ball[i].pos = vec2_madd(layout->ball[i].pos, random_in(random, 0, size),
+						vec2_from_angle(random_in(random, 0, 6.2832)));
 }
 
 START_TEST(what_does_not_overlap_stays)
@@ -294,12 +296,19 @@ START_TEST(balls_in_corners_and_along_cushions_settle)
 {
 	struct table table = scene_thesis_table();
 	struct random random = random_begin("stability cushions");
-	double x = table.length / 2 - table.ball_radius, y = table.width / 2 - table.ball_radius, d = 2 * table.ball_radius;
+	double x = table.length / 2 - table.ball_radius, y = table.width / 2 - table.ball_radius,
+	       d = 2 * table.ball_radius;
 	for (int round = 0; round < 500; round++) {
-		struct layout layout = {.count = 6, .cue = 0, .ball = {
-			ball_at(COLOUR_WHITE, (vec2){x, y}), ball_at(COLOUR_RED, (vec2){x - d, y}), ball_at(COLOUR_RED, (vec2){x, y - d}),
-			ball_at(COLOUR_RED, (vec2){-x, 0}), ball_at(COLOUR_RED, (vec2){-x, d}), ball_at(COLOUR_RED, (vec2){-x + 0.87 * d, d / 2}),
-		}};
+		struct layout layout = {.count = 6,
+					.cue = 0,
+					.ball = {
+						ball_at(COLOUR_WHITE, (vec2){x, y}),
+						ball_at(COLOUR_RED, (vec2){x - d, y}),
+						ball_at(COLOUR_RED, (vec2){x, y - d}),
+						ball_at(COLOUR_RED, (vec2){-x, 0}),
+						ball_at(COLOUR_RED, (vec2){-x, d}),
+						ball_at(COLOUR_RED, (vec2){-x + 0.87 * d, d / 2}),
+					}};
 		add_noise(&layout, &random, 0.002);
 		ck_assert(layout_settle(&layout, table.length, table.width, table.ball_radius, 0.012));
 		check_settled(&layout, &table, "corner");

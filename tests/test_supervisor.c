@@ -13,7 +13,8 @@
 #include "app/process.h"
 #include "harness.h"
 
-/* The supervised programs are scripts beside the test program, where a supervisor looks for them. Each writes a line when it starts. */
+/* The supervised programs are scripts beside the test program, where a supervisor looks for them. Each writes a line
+ * when it starts. */
 static char folder[PATH_MAX], starts[64], name[24];
 static struct supervisor supervisor;
 static sd_event *event;
@@ -133,7 +134,8 @@ END_TEST
 START_TEST(bad_use_of_one_does_not_stop_the_others)
 {
 	char body[256];
-	snprintf(body, sizeof body, "case \"$*\" in *bad*) exit 2;; esac; [ $(wc -l <%s) -lt 4 ] && exit 1; exec sleep 100", starts);
+	snprintf(body, sizeof body,
+		 "case \"$*\" in *bad*) exit 2;; esac; [ $(wc -l <%s) -lt 4 ] && exit 1; exec sleep 100", starts);
 	write_script(body);
 	start("good");
 	start("bad");
