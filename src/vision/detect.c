@@ -5,12 +5,12 @@
 
 static const double EDGE_SLACK = 0.007;		/* m a fitted centre may lie beyond where cushions let it be */
 static const double MOUTH_INNER = 0.8;		/* of a pocket's radius: nearer to its centre a ball has fallen */
-static const double SUPPORT_SEED = 0.42, SUPPORT_PACKED = 0.33, SUPPORT_MIN = 0.62;
+static const double SUPPORT_SEED = 0.42, SUPPORT_PACKED = 0.33, SUPPORT_MIN = 0.55;
 static const double CLOTH_OFF = 0.22, CLOTH_OFF_RIM = 0.1, CLOTH_RIM = 0.85;
 static const double CLOTH_DARK = -0.8, CLOTH_LIGHT = 0.3;	/* ln of levels over the cloth's */
 enum { ROUNDS = 3 };
 static const double SUPPORT_ROUGH = 0.17;	/* less in the first round */
-static const double SUPPORT_CROWDED = 0.5, RING_FREE = 0.3;	/* more of it is wanted where it lies among other foreign things */
+static const double SUPPORT_CROWDED = 0.75, RING_FREE = 0.35;	/* more of it is wanted where it lies among other foreign things */
 static const double COVER_MIN = 0.55;
 static const double SCALE_MIN = 0.86, SCALE_MAX = 1.085;
 static const double USUAL_SCALE = 0.965, USUAL_SPREAD = 0.02;	/* apparent radius of any ball */
@@ -281,13 +281,13 @@ static void find_alone(struct detector *d)
 }
 
 /* Fits all again, each knowing its neighbours. Those without any need it only once. */
-static void fit_together(struct detector *d, struct fit_view *view, int round, int steps)
+static void fit_together(struct detector *d, struct fit_view *view, int round)
 {
 	struct fit other[DETECT_MAX];
 	know_neighbours(d, view, other);
 	for (int i = 0; i < d->count; i++) {
 		struct candidate *c = &d->candidate[i];
-		if (!c->fixed && (round == 0 || !c->alone) && !fit_refine(view, &c->fit, steps))
+		if (!c->fixed && (round == 0 || !c->alone) && !fit_refine(view, &c->fit, c->alone ? 1 : 2))
 			c->refusal = REFUSED_FIT;
 	}
 	view->other_count = 0;
@@ -386,7 +386,7 @@ static void settle(struct detector *d, struct fit_view *view)
 		look(d, view->frame);
 		expect_scales(d);
 		find_alone(d);
-		fit_together(d, view, round, 2);
+		fit_together(d, view, round);
 		refuse_overlaps(d);
 		drop_refused(d);
 		/* What is no ball must neither hide nor push one; in the first round rims are still badly known. */

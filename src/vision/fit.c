@@ -146,6 +146,10 @@ static void find_edges(const struct fit_view *view, struct fit *fit, int reach, 
 		struct ray ray = {p, n, reach, step};
 		double at;
 		edge[i] = (struct edge){0};
+		if (view->coarse && i % 2 == 1) {
+			edge[i].hidden = true;
+			continue;
+		}
 		double near = nearest_neighbour(view, fit, vec2_madd(p, 0.7 * reach * step, n));
 		edge[i].hidden = near < 1;
 		if (edge[i].hidden || !profile(view->frame, &ray, fit->cloth, v, &edge[i]) ||
@@ -246,7 +250,7 @@ bool fit_refine(const struct fit_view *view, struct fit *fit, int steps)
 		bool last = s == steps;
 		if (!outline_of_ball(view->camera, fit->pos, view->radius, fit->scale, &fit->outline))
 			return false;
-		find_edges(view, fit, s == 0 ? how->wide : how->narrow, how->step, edge);
+		find_edges(view, fit, s == 0 && view->coarse ? how->wide : how->narrow, how->step, edge);
 		if (last)
 			break;
 		/* Nothing like a rim: no use going on. */

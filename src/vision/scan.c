@@ -10,6 +10,7 @@ static const double SMALL_RADIUS_PX = 7.75;	/* what a ball's radius should be in
 static const double BED_MARGIN = 0.012;		/* m beyond the noses that still belong to the bed */
 static const float CLOTH_CHROMA = 0.11f;	/* off the cloth's direction, relative to its length: still cloth */
 static const float CLOTH_SHADE_MIN = 0.5f, CLOTH_SHADE_MAX = 1.4f;
+enum { CELL_STEP = 2 };				/* of a cell, every second pixel of every second row tells enough */
 static const float CELL_MIN_SHARE = 0.15f;	/* of a cell's pixels that must be cloth before it is believed */
 
 int scan_init(struct scan *scan, int width, int height)
@@ -258,13 +259,13 @@ static bool cloth_mean(struct scan *scan)
 /* Mean colour of a cell's cloth around its median brightness: rings, shadows and ball edges fall out. */
 static void cell_colour(struct scan *scan, int cx, int cy)
 {
-	int hist[64] = {0}, n = 0, seen = 0, x1 = (cx + 1) * SCAN_CELL, y1 = (cy + 1) * SCAN_CELL;
+	int hist[64] = {0}, n = 0, x1 = (cx + 1) * SCAN_CELL, y1 = (cy + 1) * SCAN_CELL;
 	x1 = x1 < scan->width ? x1 : scan->width;
 	y1 = y1 < scan->height ? y1 : scan->height;
 	uint8_t luma[SCAN_CELL * SCAN_CELL];
 	const uint8_t *pixel[SCAN_CELL * SCAN_CELL];
-	for (int y = cy * SCAN_CELL; y < y1; y++)
-		for (int x = cx * SCAN_CELL; x < x1; x++, seen++) {
+	for (int y = cy * SCAN_CELL; y < y1; y += CELL_STEP)
+		for (int x = cx * SCAN_CELL; x < x1; x += CELL_STEP) {
 			const uint8_t *p = scan->bgr + 3 * (y * scan->width + x);
 			if (x < scan->row_from[y] || x >= scan->row_to[y] ||
 			    !is_cloth(p, scan->cloth, 1.5f * 1.5f * CLOTH_CHROMA * CLOTH_CHROMA))
@@ -285,7 +286,7 @@ static void cell_colour(struct scan *scan, int cx, int cy)
 		kept++;
 	}
 	int at = cy * scan->cells_x + cx;
-	bool believed = kept > CELL_MIN_SHARE * SCAN_CELL * SCAN_CELL;
+	bool believed = kept > CELL_MIN_SHARE * SCAN_CELL * SCAN_CELL / (CELL_STEP * CELL_STEP);
 	scan->cell_weight[at] = believed ? kept : 0;
 	for (int c = 0; c < 3; c++)
 		scan->cell[3 * at + c] = believed ? total[c] / kept : 0;
@@ -381,44 +382,56 @@ void scan_cloth_at(const struct scan *scan, vec2 px, float out[3])
 	cell_at(scan, (float)small.x, (float)small.y, out);
 }
 
-/* 128 at the border between cloth and something else. Off-direction counts in full; darkness only where no shadow reaches. */
-static inline uint8_t mark_of(const uint8_t *p, const float c[3])
+/* How far from cloth a pixel is, in three steps. Off the cloth's direction counts whatever the brightness; dark only where no shadow
+ * reaches; bright (a white ball has little colour of its own) only beyond the projector's light. */
+static const float OFF_SURE = 0.16f * 0.16f, OFF_HALF = 0.113f * 0.113f;	/* squared, of the pixel's own length */
+static const float OFF_FLOOR = 0.04f;	/* of the cloth's length, squared: noise of dark pixels */
+static const float DARK_SURE = 0.28f * 0.28f, DARK_HALF = 0.334f * 0.334f, LIGHT_SURE = 1.6f * 1.6f, LIGHT_HALF = 1.458f * 1.458f;
+
+enum { RUN = 8 };	/* pixels that share a cloth colour */
+
+/* Straight loops over arrays: the compiler makes vectors of them. */
+static void mark_run(const uint8_t *restrict p, const float cloth[3], uint8_t *restrict mark)
 {
-	float pf[3] = {p[0], p[1], p[2]};
-	float pc = pf[0] * c[0] + pf[1] * c[1] + pf[2] * c[2], cc = c[0] * c[0] + c[1] * c[1] + c[2] * c[2];
-	float pp = pf[0] * pf[0] + pf[1] * pf[1] + pf[2] * pf[2];
-	float shade2 = pc * pc / (cc * cc);
-	float off2 = pp - pc * pc / cc;
-	/* Half way at 0.16 of the pixel's own length, with a floor for the noise of dark pixels. */
-	float v = off2 / (0.16f * 0.16f * (pp + 0.04f * cc)) * 128.0f;
-	float dark = (0.38f * 0.38f - shade2) * (128.0f / (0.38f * 0.38f - 0.28f * 0.28f));
-	/* A white ball has little colour of its own: brighter than cloth under the projector's light. */
-	float bright = (shade2 - 1.3f * 1.3f) * (128.0f / (1.6f * 1.6f - 1.3f * 1.3f));
-	v = v > dark ? v : dark;
-	v = v > bright ? v : bright;
-	return (uint8_t)(v < 0 ? 0 : v > 255 ? 255 : v);
+	float b[RUN], g[RUN], r[RUN];
+	float cc = cloth[0] * cloth[0] + cloth[1] * cloth[1] + cloth[2] * cloth[2], inverse = 1 / cc;
+	for (int i = 0; i < RUN; i++) {
+		b[i] = p[3 * i];
+		g[i] = p[3 * i + 1];
+		r[i] = p[3 * i + 2];
+	}
+	int level[RUN];
+	for (int i = 0; i < RUN; i++) {
+		float pc = b[i] * cloth[0] + g[i] * cloth[1] + r[i] * cloth[2];
+		float pp = b[i] * b[i] + g[i] * g[i] + r[i] * r[i];
+		float along = pc * pc * inverse, off = pp - along, unit = pp + OFF_FLOOR * cc;
+		int sure = (off > OFF_SURE * unit) | (along < DARK_SURE * cc) | (along > LIGHT_SURE * cc);
+		int half = (off > OFF_HALF * unit) | (along < DARK_HALF * cc) | (along > LIGHT_HALF * cc);
+		level[i] = sure * 191 + half * 64;
+	}
+	for (int i = 0; i < RUN; i++)
+		mark[i] = (uint8_t)level[i];
 }
 
-/* One row: the cloth's colour runs linearly between the middles of cells. */
+/* One row, in runs; the last one is filled up. */
 static void mark_row(struct scan *scan, int y, int x0, int x1)
 {
 	uint8_t *mark = scan->mark + y * scan->width;
+	const uint8_t *bgr = scan->bgr + 3 * (ptrdiff_t)y * scan->width;
 	int from = clamp_int(scan->row_from[y], x0, x1), to = clamp_int(scan->row_to[y], from, x1);
 	memset(mark + x0, 0, (size_t)(from - x0));
 	memset(mark + to, 0, (size_t)(x1 - to));
-	for (int x = from; x < to;) {
-		int end = (x + SCAN_CELL / 2) / SCAN_CELL * SCAN_CELL + SCAN_CELL / 2;
-		end = end < to ? end : to;
-		float a[3], b[3], step[3];
-		cell_at(scan, (float)x, (float)y, a);
-		cell_at(scan, (float)end, (float)y, b);
-		for (int c = 0; c < 3; c++)
-			step[c] = (b[c] - a[c]) / (float)(end - x);
-		for (const uint8_t *p = scan->bgr + 3 * (y * scan->width + x); x < end; x++, p += 3) {
-			mark[x] = mark_of(p, a);
-			for (int c = 0; c < 3; c++)
-				a[c] += step[c];
+	for (int x = from; x < to; x += RUN) {
+		float cloth[3];
+		cell_at(scan, (float)x + RUN / 2.0f, (float)y, cloth);
+		if (x + RUN <= to) {
+			mark_run(bgr + 3 * x, cloth, mark + x);
+			continue;
 		}
+		uint8_t pixel[3 * RUN] = {0}, last[RUN];
+		memcpy(pixel, bgr + 3 * x, 3 * (size_t)(to - x));
+		mark_run(pixel, cloth, last);
+		memcpy(mark + x, last, (size_t)(to - x));
 	}
 }
 

@@ -7,6 +7,7 @@
 
 #include "vision/outline.h"
 
+enum { KNOTS_X = 9, KNOTS_Y = 5 };
 static const int EDGE_MIN2 = 14 * 14;		/* squared difference over two small pixels, levels */
 static const double VOTE_SHARE = 0.20;		/* of the outline's length that must have voted */
 static const double COVER_MIN = 0.5;		/* of the inside that must not be cloth */
@@ -56,13 +57,34 @@ static bool shape_at(const struct scan *scan, const struct camera *camera, const
 	return true;
 }
 
+static float mix(float a, float b, float share)
+{
+	return a + share * (b - a);
+}
+
+static struct seed_shape mix_shapes(struct seed_shape a, struct seed_shape b, float share)
+{
+	return (struct seed_shape){mix(a.xx, b.xx, share), mix(a.xy, b.xy, share), mix(a.yy, b.yy, share)};
+}
+
+/* Shapes change slowly: a coarse grid over the picture, cells in between. */
 bool seeds_place(struct seeds *seeds, const struct scan *scan, const struct camera *camera, const struct table *table)
 {
-	for (int cy = 0; cy < scan->cells_y; cy++)
-		for (int cx = 0; cx < scan->cells_x; cx++)
-			if (!shape_at(scan, camera, table, (cx + 0.5) * SCAN_CELL, (cy + 0.5) * SCAN_CELL,
-				      &seeds->shape[cy * scan->cells_x + cx]))
+	struct seed_shape knot[KNOTS_Y][KNOTS_X];
+	for (int j = 0; j < KNOTS_Y; j++)
+		for (int i = 0; i < KNOTS_X; i++)
+			if (!shape_at(scan, camera, table, (double)i * scan->width / (KNOTS_X - 1),
+				      (double)j * scan->height / (KNOTS_Y - 1), &knot[j][i]))
 				return false;
+	for (int cy = 0; cy < scan->cells_y; cy++)
+		for (int cx = 0; cx < scan->cells_x; cx++) {
+			float x = ((float)cx + 0.5f) / (float)scan->cells_x * (KNOTS_X - 1);
+			float y = ((float)cy + 0.5f) / (float)scan->cells_y * (KNOTS_Y - 1);
+			int i = (int)x, j = (int)y;
+			struct seed_shape top = mix_shapes(knot[j][i], knot[j][i + 1], x - (float)i);
+			struct seed_shape bottom = mix_shapes(knot[j + 1][i], knot[j + 1][i + 1], x - (float)i);
+			seeds->shape[cy * scan->cells_x + cx] = mix_shapes(top, bottom, y - (float)j);
+		}
 	return true;
 }
 
