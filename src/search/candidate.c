@@ -9,7 +9,7 @@
  * comes flat along a cushion must fall at the front of a pocket, before it meets the far jaw or the near nose. */
 static const struct {
 	double across, front;
-} aim_place[] = {{0, 0}, {0.5, 0.8}, {0.8, 0}, {0.2, 0.9}, {0.9, 0.35}};
+} aim_place[] = {{0, 0}, {0.5, 0.8}, {0.8, 0}, {0.2, 0.9}, {0.8, 0.5}};
 /* What such an aim costs, so that the middle comes first. */
 static const double AIM_COST = 0.25;
 /* Share of a pocket's radius that the middle of a ball along a cushion may lie off its middle. */
