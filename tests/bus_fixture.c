@@ -16,6 +16,13 @@
 
 #include "app/process.h"
 
+/* Sanitizers and the leak check at the end take their time. */
+#if defined(__SANITIZE_ADDRESS__) || defined(__SANITIZE_THREAD__)
+static const double SLOWER = 10;
+#else
+static const double SLOWER = 1;
+#endif
+
 enum { CHILD_MAX = 32, ARGUMENT_MAX = 16 };
 static pid_t child[CHILD_MAX];
 static int child_count;
@@ -45,7 +52,7 @@ struct bus *fixture_bus(void)
 
 bool fixture_wait(struct bus *bus, bool (*condition)(void), double seconds)
 {
-	double end = process_seconds(NULL) + seconds;
+	double end = process_seconds(NULL) + SLOWER * seconds;
 	struct pollfd fd = {bus_descriptor(bus), POLLIN, 0};
 	while (!condition()) {
 		double left = end - process_seconds(NULL);
@@ -146,7 +153,7 @@ static void forget(pid_t pid)
 
 int fixture_end(pid_t pid, double seconds)
 {
-	double end = process_seconds(NULL) + seconds;
+	double end = process_seconds(NULL) + SLOWER * seconds;
 	for (;;) {
 		int status;
 		pid_t r = waitpid(pid, &status, WNOHANG);
