@@ -166,11 +166,11 @@ static FILE *proc(const struct planner_client *client, const char *name)
 
 long client_memory(const struct planner_client *client)
 {
-	long size = 0, resident = 0;
+	long data = 0;
 	FILE *f = proc(client, "statm");
-	ck_assert_int_eq(fscanf(f, "%ld %ld", &size, &resident), 2);
+	ck_assert_int_eq(fscanf(f, "%*d %*d %*d %*d %*d %ld", &data), 1);
 	fclose(f);
-	return resident * sysconf(_SC_PAGESIZE) / 1024;
+	return data * sysconf(_SC_PAGESIZE) / 1024;
 }
 
 double client_cpu(const struct planner_client *client)

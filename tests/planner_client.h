@@ -45,7 +45,7 @@ bool client_wait_first(struct planner_client *client, double seconds);
 /* Value of a metric in the newest STATUS, NAN when it is not there. */
 double client_metric(const struct planner_client *client, const char *name);
 
-/* kB resident; s of CPU time used so far. */
+/* KiB of memory taken, touched or not (what was taken at the start becomes resident only as searches need it); s of CPU time used so far. */
 long client_memory(const struct planner_client *client);
 double client_cpu(const struct planner_client *client);
 
