@@ -469,7 +469,7 @@ bool detector_frame(struct detector *d, const struct image *frame, const struct 
 	detector_begin(d);
 	if (!scan_frame(&d->scan, frame))
 		return false;
-	detector_search(d, frame, camera, NULL);
+	detector_search(d, frame, camera, d->scan.changed);
 	detector_settle(d, frame, camera);
 	return true;
 }

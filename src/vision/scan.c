@@ -159,11 +159,20 @@ bool scan_place(struct scan *scan, const struct camera *camera, const struct tab
 
 /* ---- copy ------------------------------------------------------------------------------------------------------------ */
 
+enum { STRIP = 64 };
+
+/* Downwards first: that loop runs over plain bytes. */
 static void shrink_two(const uint8_t *restrict a, const uint8_t *restrict b, uint8_t *restrict out, int count)
 {
-	for (int i = 0; i < count; i++, a += 6, b += 6, out += 3)
-		for (int c = 0; c < 3; c++)
-			out[c] = (uint8_t)((a[c] + a[c + 3] + b[c] + b[c + 3] + 2) >> 2);
+	uint16_t sum[6 * STRIP];
+	for (int from = 0; from < count; from += STRIP) {
+		int n = count - from < STRIP ? count - from : STRIP;
+		for (int i = 0; i < 6 * n; i++)
+			sum[i] = (uint16_t)(a[6 * from + i] + b[6 * from + i] + 1);
+		for (int i = 0; i < n; i++)
+			for (int c = 0; c < 3; c++)
+				out[3 * (from + i) + c] = (uint8_t)((sum[6 * i + c] + sum[6 * i + c + 3]) >> 2);
+	}
 }
 
 static void shrink_any(const uint8_t *in, ptrdiff_t stride, int factor, uint8_t *out, int count)
@@ -458,6 +467,18 @@ static void count_foreign(struct scan *scan, int cx, int cy)
 	scan->foreign[cy * scan->cells_x + cx] = (uint16_t)foreign;
 }
 
+static void dilate(struct scan *scan, const uint8_t *core)
+{
+	for (int cy = 0; cy < scan->cells_y; cy++)
+		for (int cx = 0; cx < scan->cells_x; cx++) {
+			int any = 0;
+			for (int y = cy > 0 ? cy - 1 : 0; y <= cy + 1 && y < scan->cells_y; y++)
+				for (int x = cx > 0 ? cx - 1 : 0; x <= cx + 1 && x < scan->cells_x; x++)
+					any |= core[y * scan->cells_x + x];
+			scan->changed[cy * scan->cells_x + cx] = (uint8_t)any;
+		}
+}
+
 bool scan_frame(struct scan *scan, const struct image *frame)
 {
 	copy_small(scan, frame, 0, 0, scan->width, scan->height);
@@ -469,6 +490,10 @@ bool scan_frame(struct scan *scan, const struct image *frame)
 	for (int cy = 0; cy < scan->cells_y; cy++)
 		for (int cx = 0; cx < scan->cells_x; cx++)
 			count_foreign(scan, cx, cy);
+	uint8_t *core = scan->changed + scan->cells_x * scan->cells_y;
+	for (int i = 0; i < scan->cells_x * scan->cells_y; i++)
+		core[i] = scan->foreign[i] > 0;
+	dilate(scan, core);
 	memcpy(scan->reference, scan->bgr, 3 * (size_t)scan->width * (size_t)scan->height);
 	return true;
 }
@@ -512,18 +537,6 @@ static int usual_difference(const struct scan *scan)
 	for (sum = hist[0]; 2 * sum < cells && at < bins - 1;)
 		sum += hist[++at];
 	return at;
-}
-
-static void dilate(struct scan *scan, const uint8_t *core)
-{
-	for (int cy = 0; cy < scan->cells_y; cy++)
-		for (int cx = 0; cx < scan->cells_x; cx++) {
-			int any = 0;
-			for (int y = cy > 0 ? cy - 1 : 0; y <= cy + 1 && y < scan->cells_y; y++)
-				for (int x = cx > 0 ? cx - 1 : 0; x <= cx + 1 && x < scan->cells_x; x++)
-					any |= core[y * scan->cells_x + x];
-			scan->changed[cy * scan->cells_x + cx] = (uint8_t)any;
-		}
 }
 
 int scan_changes(struct scan *scan, const struct image *frame)

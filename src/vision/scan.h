@@ -27,7 +27,7 @@ struct scan {
 	float *cell_weight;
 	float cloth[3];		/* of the whole bed, BGR */
 	uint8_t *reference;	/* what the marks were made from: bgr as it was then */
-	uint8_t *changed;	/* per cell: differs from the reference */
+	uint8_t *changed;	/* per cell: there is something new in it or beside it; after a whole frame: anything but cloth */
 	uint16_t *foreign;	/* per cell: pixels that are not cloth */
 	uint16_t *difference;	/* per cell: mean absolute difference, 1/16 level */
 };
