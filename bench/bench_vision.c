@@ -1,4 +1,5 @@
-/* Speed of the vision beside the old way's, circle Hough, on the same frames in the same run; and error against truth. */
+/* Speed of the vision beside the old way's, circle Hough, on the same frames in the same run; and error against truth.
+ */
 #include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
@@ -61,7 +62,8 @@ static void lay_out(struct bench *b)
 	b->ball[0] = ball_at(COLOUR_WHITE, (vec2){-0.8, 0.03});
 	for (int i = 1; i < BALLS; i++)
 		b->ball[i] = ball_at(i < 7 ? (enum ball_colour)(i + 1) : COLOUR_RED,
-				     (vec2){-0.8 + 0.24 * ((i - 1) % 7) + 0.01 * (i / 7), -0.36 + 0.36 * ((i - 1) / 7) + (i < 8 || i > 14 ? 0 : 0.12)});
+				     (vec2){-0.8 + 0.24 * ((i - 1) % 7) + 0.01 * (i / 7),
+					    -0.36 + 0.36 * ((i - 1) / 7) + (i < 8 || i > 14 ? 0 : 0.12)});
 }
 
 static void run_cold(struct bench *b, const struct camera *camera)
@@ -134,7 +136,8 @@ static bool prepare(struct bench *b)
 	struct vision_def def = config_vision_def(&b->config, &b->colours);
 	def.marker_interval = 1e6;
 	if (vision_create(&b->stream, &def, err, sizeof(err)) < 0 ||
-	    detector_init(&b->detector, &b->config.table, &b->classifier, b->image.image.width, b->image.image.height) < 0) {
+	    detector_init(&b->detector, &b->config.table, &b->classifier, b->image.image.width, b->image.image.height) <
+		    0) {
 		fprintf(stderr, "%s\n", err);
 		return false;
 	}
@@ -194,7 +197,8 @@ static void write_table(struct bench *b, const char *build)
 	}
 	fprintf(file, "way,ms,median_mm\ncircle Hough,%.3f,%.3f\n", median(&b->hough.ms), median(&b->hough.error));
 	fprintf(file, "cold,%.3f,%.3f\n", median(&b->cold.ms), median(&b->cold.error));
-	fprintf(file, "cold with marker search,%.3f,%.3f\n", median(&b->cold.ms) + median(&b->markers), median(&b->cold.error));
+	fprintf(file, "cold with marker search,%.3f,%.3f\n", median(&b->cold.ms) + median(&b->markers),
+		median(&b->cold.error));
 	fprintf(file, "tracked,%.3f,%.3f\n", median(&b->tracked.ms), median(&b->tracked.error));
 	if (fclose(file) != 0)
 		perror(path);
@@ -225,7 +229,8 @@ int main(int argc, char **argv)
 	report_way(report, "hough", &b.hough, NAN);
 	report_number(report, "vision.hough_circles_alone_ms", median(&b.hough_alone), "ms");
 	eval_bar(report, "vision.cold_over_hough_circles", median(&b.cold.ms) / median(&b.hough_alone), "ratio", 0.5);
-	eval_bar(report, "vision.tracked_over_hough_circles", median(&b.tracked.ms) / median(&b.hough_alone), "ratio", 0.15);
+	eval_bar(report, "vision.tracked_over_hough_circles", median(&b.tracked.ms) / median(&b.hough_alone), "ratio",
+		 0.15);
 	report_number(report, "vision.markers_ms", median(&b.markers), "ms");
 	report_number(report, "vision.markers_near_ms", median(&b.markers_near), "ms");
 	const char *data = getenv("DATA");
@@ -233,8 +238,10 @@ int main(int argc, char **argv)
 	if (b.photo_hough.count > 0) {
 		eval_bar(report, "vision.photos.cold_ms", median(&b.photo_cold), "ms", 10);
 		report_number(report, "vision.photos.hough_circles_alone_ms", median(&b.photo_hough), "ms");
-		eval_bar(report, "vision.photos.cold_over_hough_circles", median(&b.photo_cold) / median(&b.photo_hough), "ratio", 0.5);
-		eval_bar(report, "vision.photos.tracked_over_hough_circles", median(&b.tracked.ms) / median(&b.photo_hough), "ratio", 0.15);
+		eval_bar(report, "vision.photos.cold_over_hough_circles",
+			 median(&b.photo_cold) / median(&b.photo_hough), "ratio", 0.5);
+		eval_bar(report, "vision.photos.tracked_over_hough_circles",
+			 median(&b.tracked.ms) / median(&b.photo_hough), "ratio", 0.15);
 	}
 	write_table(&b, argv[1]);
 	return report_close(report) < 0;

@@ -5,7 +5,8 @@
 
 #include <opencv2/imgproc.hpp>
 
-namespace {
+namespace
+{
 
 double spent;
 

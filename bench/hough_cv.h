@@ -11,8 +11,8 @@ extern "C" {
 /* Middles (px) of circles of about that radius, at most max; returns how many. One thread.
  */
 int hough_balls(const struct image *frame, double radius_px, double *x, double *y, int max);
-/* s of this thread's CPU that cv::HoughCircles alone took in the last call, on the plain grey frame. (The whole way runs it again on the
- * segmented and smoothed one; take these seconds off its time.) */
+/* s of this thread's CPU that cv::HoughCircles alone took in the last call, on the plain grey frame. (The whole way
+ * runs it again on the segmented and smoothed one; take these seconds off its time.) */
 double hough_seconds(void);
 
 #ifdef __cplusplus

@@ -17,18 +17,18 @@ static const char *const set_name[SET_COUNT] = {"projector_off", "without_halo",
 struct picture {
 	char path[512], name[96];
 	const json_t *entry;
-	int set;		/* of set_name, -1 none */
-	double worst;		/* mm */
+	int set;      /* of set_name, -1 none */
+	double worst; /* mm */
 	struct vision_result result;
 	struct colour_sample sample[VISION_BALL_MAX];
-	enum ball_colour label[VISION_BALL_MAX];	/* UNKNOWN: not labelled */
+	enum ball_colour label[VISION_BALL_MAX]; /* UNKNOWN: not labelled */
 };
 
 struct photos {
 	struct picture picture[IMAGE_MAX];
 	int count, lost, ghosts, uncalibrated, arm_balls, unlabelled;
 	struct numbers dx, dy, error, by_colour[COLOUR_COUNT], measured, touching, ms;
-	int confusion[COLOUR_COUNT][COLOUR_COUNT];	/* true, found */
+	int confusion[COLOUR_COUNT][COLOUR_COUNT]; /* true, found */
 };
 
 static double number(const json_t *object, const char *key)
@@ -139,7 +139,8 @@ static void compare_rest(struct photos *p, const struct picture *pic)
 		}
 }
 
-static void look_at(struct photos *p, struct vision *vision, struct image_buffer *image, const json_t *entry, const char *data)
+static void look_at(struct photos *p, struct vision *vision, struct image_buffer *image, const json_t *entry,
+		    const char *data)
 {
 	char err[256];
 	struct picture *pic = &p->picture[p->count];
@@ -156,7 +157,8 @@ static void look_at(struct photos *p, struct vision *vision, struct image_buffer
 		return;
 	}
 	double before = eval_seconds();
-	if (vision_detect(vision, &image->image, &pic->result, err, sizeof(err)) < 0 || pic->result.calibration == CALIBRATION_NONE)
+	if (vision_detect(vision, &image->image, &pic->result, err, sizeof(err)) < 0 ||
+	    pic->result.calibration == CALIBRATION_NONE)
 		p->uncalibrated++;
 	numbers_add(&p->ms, 1000 * (eval_seconds() - before));
 	vision_samples(vision, pic->sample);
@@ -253,9 +255,10 @@ static void report_errors(struct report *report, struct photos *p)
 	for (int k = 0; k < COLOUR_COUNT; k++) {
 		struct numbers *n = &p->by_colour[k];
 		if (n->count > 0)
-			printf("  %8s %4d balls: min %.3f, %.2f, %.2f, %.2f, max %.2f mm\n", ball_colour_name((enum ball_colour)k),
-			       n->count, numbers_quantile(n, 0), numbers_quantile(n, 0.25), numbers_quantile(n, 0.5),
-			       numbers_quantile(n, 0.75), numbers_quantile(n, 1));
+			printf("  %8s %4d balls: min %.3f, %.2f, %.2f, %.2f, max %.2f mm\n",
+			       ball_colour_name((enum ball_colour)k), n->count, numbers_quantile(n, 0),
+			       numbers_quantile(n, 0.25), numbers_quantile(n, 0.5), numbers_quantile(n, 0.75),
+			       numbers_quantile(n, 1));
 		free(n->value);
 	}
 	free(centred.value);
@@ -316,11 +319,13 @@ void eval_photos(struct report *report, const struct config *config, const char 
 		return;
 	}
 	struct vision *vision = eval_vision(config, &colours);
-	json_array_foreach(labels, i, entry) {
+	json_array_foreach(labels, i, entry)
+	{
 		if (p.count < IMAGE_MAX)
 			look_at(&p, vision, &image, entry, data);
 	}
-	printf("%d photographs, %d not calibrated, %d labelled balls not found\n", p.count, p.uncalibrated, p.unlabelled);
+	printf("%d photographs, %d not calibrated, %d labelled balls not found\n", p.count, p.uncalibrated,
+	       p.unlabelled);
 	report_errors(report, &p);
 	report_others(report, &p);
 	report_colours(report, &p);

@@ -15,8 +15,8 @@ enum { FRAMES = 12, BALLS = 22, RINGS = 1500 };
 struct weather {
 	const char *name;
 	double noise, exposure;
-	double blue, red;	/* gains after the camera */
-	int blur;		/* passes of a 3 x 3 box */
+	double blue, red; /* gains after the camera */
+	int blur;	  /* passes of a 3 x 3 box */
 	bool overlay;
 };
 
@@ -67,7 +67,9 @@ static void lay_out(struct stage *s, int frame)
 	while (count < BALLS) {
 		vec2 p = {uniform(s, -hx, hx), uniform(s, -hy, hy)};
 		int left = BALLS - 1 - count;
-		enum ball_colour colour = left == 0 ? COLOUR_WHITE : left < 7 ? (enum ball_colour)(left + 1) : COLOUR_RED;
+		enum ball_colour colour = left == 0  ? COLOUR_WHITE
+					  : left < 7 ? (enum ball_colour)(left + 1)
+						     : COLOUR_RED;
 		if (is_free(s, count, p))
 			s->ball[count++] = ball_at(colour, p);
 	}
@@ -94,11 +96,13 @@ static void project_overlay(struct stage *s)
 	for (int b = 0; b < BALLS; b++)
 		for (int i = 0; i < RINGS; i++) {
 			vec2 ring = vec2_madd(s->ball[b].pos, 0.052, vec2_from_angle(i * 6.2831853 / RINGS));
-			vec2 line = vec2_madd(s->ball[b].pos, (double)i / RINGS, vec2_sub(s->ball[(b + 1) % 5].pos, s->ball[b].pos));
+			vec2 line = vec2_madd(s->ball[b].pos, (double)i / RINGS,
+					      vec2_sub(s->ball[(b + 1) % 5].pos, s->ball[b].pos));
 			for (int k = 0; k < 2; k++) {
 				vec2 p = k == 0 ? ring : line;
 				double q = m[6] * p.x + m[7] * p.y + m[8];
-				dot(pixel, w, h, (m[0] * p.x + m[1] * p.y + m[2]) / q, (m[3] * p.x + m[4] * p.y + m[5]) / q);
+				dot(pixel, w, h, (m[0] * p.x + m[1] * p.y + m[2]) / q,
+				    (m[3] * p.x + m[4] * p.y + m[5]) / q);
 			}
 		}
 	table_camera_light(s->camera, pixel, w, h, w * 4);
@@ -180,9 +184,11 @@ static void run(struct report *report, struct stage *s, const struct weather *w)
 			judge(&score, s, &r, f % 3 == 2);
 	}
 	table_camera_destroy(s->camera);
-	printf("  %-16s lost %d, ghosts %d, colours %d of %d, free median %.3f max %.2f mm, rack median %.3f max %.2f mm\n", w->name,
-	       score.lost, score.ghosts, score.colours, score.balls, numbers_quantile(&score.free, 0.5),
-	       numbers_quantile(&score.free, 1), numbers_quantile(&score.packed, 0.5), numbers_quantile(&score.packed, 1));
+	printf("  %-16s lost %d, ghosts %d, colours %d of %d, free median %.3f max %.2f mm, rack median %.3f max %.2f "
+	       "mm\n",
+	       w->name, score.lost, score.ghosts, score.colours, score.balls, numbers_quantile(&score.free, 0.5),
+	       numbers_quantile(&score.free, 1), numbers_quantile(&score.packed, 0.5),
+	       numbers_quantile(&score.packed, 1));
 	snprintf(name, sizeof(name), "vision.rendered.%s.median_mm", w->name);
 	report_number(report, name, numbers_quantile(&score.free, 0.5), "mm");
 	snprintf(name, sizeof(name), "vision.rendered.%s.lost_and_ghosts", w->name);
@@ -199,13 +205,13 @@ static void run(struct report *report, struct stage *s, const struct weather *w)
 void eval_rendered(struct report *report, const struct config *config)
 {
 	static const struct weather weather[] = {
-		{"plain", 2, 1, 1, 1, 0, false},	{"overlay", 2, 1, 1, 1, 0, true},
-		{"noise_5", 5, 1, 1, 1, 0, true},	{"noise_10", 10, 1, 1, 1, 0, true},
-		{"noise_20", 20, 1, 1, 1, 0, true},	{"exposure_0.2", 2, 0.2, 1, 1, 0, true},
+		{"plain", 2, 1, 1, 1, 0, false},	 {"overlay", 2, 1, 1, 1, 0, true},
+		{"noise_5", 5, 1, 1, 1, 0, true},	 {"noise_10", 10, 1, 1, 1, 0, true},
+		{"noise_20", 20, 1, 1, 1, 0, true},	 {"exposure_0.2", 2, 0.2, 1, 1, 0, true},
 		{"exposure_0.4", 2, 0.4, 1, 1, 0, true}, {"exposure_1.5", 2, 1.5, 1, 1, 0, true},
 		{"exposure_2.5", 2, 2.5, 1, 1, 0, true}, {"warm", 2, 1, 0.75, 1.25, 0, true},
-		{"cold", 2, 1, 1.25, 0.75, 0, true},	{"blur_1", 2, 1, 1, 1, 1, true},
-		{"blur_3", 2, 1, 1, 1, 3, true},	{"blur_6", 2, 1, 1, 1, 6, true},
+		{"cold", 2, 1, 1.25, 0.75, 0, true},	 {"blur_1", 2, 1, 1, 1, 1, true},
+		{"blur_3", 2, 1, 1, 1, 3, true},	 {"blur_6", 2, 1, 1, 1, 6, true},
 	};
 	static struct stage s;
 	struct colour_model colours;

@@ -14,10 +14,10 @@ static const double mm = 1000, FOUND = 0.015;
 enum { SHOT_BALLS = 22, WARM_UP = 5 };
 
 struct watched {
-	vec2 start;		/* m */
-	int rest_until;		/* frame of the file */
+	vec2 start;	/* m */
+	int rest_until; /* frame of the file */
 	bool seen;
-	vec2 raw, steady;	/* of the frame before */
+	vec2 raw, steady; /* of the frame before */
 	vec2 raw_px, steady_px;
 	struct thesis_stabiliser thesis;
 	vec2 thesis_pos;
@@ -38,7 +38,8 @@ static int rest_until(const json_t *shot, const char *id, int shot_frame)
 {
 	size_t i;
 	const json_t *event;
-	json_array_foreach(json_object_get(shot, "events"), i, event) {
+	json_array_foreach(json_object_get(shot, "events"), i, event)
+	{
 		const char *ball = json_string_value(json_object_get(event, "ball"));
 		if (ball && strcmp(ball, id) == 0)
 			return shot_frame + (int)(number(event, "time_s") * 30) - 2;
@@ -54,7 +55,8 @@ static int watch(const json_t *shot, struct watched *w)
 	size_t i;
 	const json_t *ball;
 	int count = 0;
-	json_array_foreach(json_object_get(shot, "balls"), i, ball) {
+	json_array_foreach(json_object_get(shot, "balls"), i, ball)
+	{
 		const json_t *pos = json_object_get(ball, "position_mm");
 		if (count == SHOT_BALLS)
 			break;
@@ -151,15 +153,17 @@ static void print_row(const char *what, struct numbers *n)
 	double sum = 0;
 	for (int i = 0; i < n->count; i++)
 		sum += n->value[i];
-	printf("  %-22s %6d: min %.4f, %.4f, %.4f, %.4f, max %.3f, sum %.2f mm\n", what, n->count, numbers_quantile(n, 0),
-	       numbers_quantile(n, 0.25), numbers_quantile(n, 0.5), numbers_quantile(n, 0.75), numbers_quantile(n, 1), sum);
+	printf("  %-22s %6d: min %.4f, %.4f, %.4f, %.4f, max %.3f, sum %.2f mm\n", what, n->count,
+	       numbers_quantile(n, 0), numbers_quantile(n, 0.25), numbers_quantile(n, 0.5), numbers_quantile(n, 0.75),
+	       numbers_quantile(n, 1), sum);
 }
 
 static void summarise(struct report *report, struct streams *s)
 {
-	eval_bar(report, "vision.videos.ghosts_per_frame", s->frames > 0 ? (double)s->ghosts / s->frames : 0, "count", 0.01);
-	eval_floor(report, "vision.videos.rest_found_percent", s->rest_wanted > 0 ? 100.0 * s->rest_found / s->rest_wanted : 0, "%",
-		   99.5);
+	eval_bar(report, "vision.videos.ghosts_per_frame", s->frames > 0 ? (double)s->ghosts / s->frames : 0, "count",
+		 0.01);
+	eval_floor(report, "vision.videos.rest_found_percent",
+		   s->rest_wanted > 0 ? 100.0 * s->rest_found / s->rest_wanted : 0, "%", 99.5);
 	eval_bar(report, "vision.rest.raw_rms_px", numbers_rms(&s->raw_px), "px", 0.10);
 	eval_bar(report, "vision.rest.steady_rms_px", numbers_rms(&s->steady_px), "px", 0.03);
 	eval_bar(report, "vision.rest.steady_median_mm", numbers_quantile(&s->steady_mm, 0.5), "mm", 0.02);
@@ -185,8 +189,7 @@ void eval_videos(struct report *report, const struct config *config, const char 
 		json_decref(root);
 		return;
 	}
-	json_array_foreach(json_object_get(root, "shots"), i, shot)
-		run(&s, config, &colours, shot, data);
+	json_array_foreach(json_object_get(root, "shots"), i, shot) run(&s, config, &colours, shot, data);
 	summarise(report, &s);
 	json_decref(root);
 }

@@ -94,8 +94,10 @@ END_TEST
 
 START_TEST(test_sources_that_are_none)
 {
-	static const char *const source[] = {"dir:%s", "dir:%s/nowhere", "file:%s/nowhere.mp4", "file:%s", "v4l2:%s/video9", "tape:%s", ""};
-	static const char *const reason[] = {"no PNG", "No such", "No such", "folder", "No such", "unknown source", "unknown source"};
+	static const char *const source[] = {
+		"dir:%s", "dir:%s/nowhere", "file:%s/nowhere.mp4", "file:%s", "v4l2:%s/video9", "tape:%s", ""};
+	static const char *const reason[] = {"no PNG",	"No such",	  "No such",	   "folder",
+					     "No such", "unknown source", "unknown source"};
 	int rc;
 	char err[256];
 	for (int i = 0; i < 7; i++) {
@@ -118,7 +120,8 @@ START_TEST(test_truncated_video_says_so)
 	if (!data)
 		return;
 	snprintf(command, sizeof(command),
-		 "f=%s/videos/null_grad_stoss_1_0003_0009.mp4; head -c $(($(stat -c %%s $f) / 2)) $f > %s/half.mp4", data, folder);
+		 "f=%s/videos/null_grad_stoss_1_0003_0009.mp4; head -c $(($(stat -c %%s $f) / 2)) $f > %s/half.mp4",
+		 data, folder);
 	ck_assert_int_eq(system(command), 0);
 	struct capture *capture = open_source("file:%s/half.mp4", &rc, err);
 	struct image_buffer image = {0};

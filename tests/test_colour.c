@@ -10,7 +10,7 @@
 
 static const float CLOTH[3] = {120, 150, 95};
 /* BGR of painted balls, by enum ball_colour. */
-static const uint8_t PAINT[COLOUR_CLASSES][3] = {{215, 235, 240}, {25, 15, 200}, {20, 170, 240}, {90, 110, 15},
+static const uint8_t PAINT[COLOUR_CLASSES][3] = {{215, 235, 240}, {25, 15, 200},  {20, 170, 240},  {90, 110, 15},
 						 {30, 45, 150},	  {200, 110, 20}, {150, 130, 235}, {30, 25, 30}};
 
 /* A ball of one colour, its light changed by gain, with noise. */
@@ -35,7 +35,8 @@ static struct colour_model learned(struct random *r)
 	char err[128];
 	for (int i = 0; i < COLOUR_CLASSES * 20; i++) {
 		enum ball_colour colour = (enum ball_colour)(i % COLOUR_CLASSES);
-		sample[i] = (struct colour_sample){look(r, colour, random_in(r, 0.85, 1.05)), random_in(r, 0.95, 1), colour};
+		sample[i] = (struct colour_sample){look(r, colour, random_in(r, 0.85, 1.05)), random_in(r, 0.95, 1),
+						   colour};
 	}
 	ck_assert_int_eq(colour_learn(sample, COLOUR_CLASSES * 20, &model, err, sizeof(err)), 0);
 	ck_assert_int_eq(colour_model_check(&model, err, sizeof(err)), 0);
@@ -152,7 +153,8 @@ START_TEST(test_bad_models_are_named)
 }
 END_TEST
 
-/* ---- the file -------------------------------------------------------------------------------------------------------- */
+/* ---- the file
+ * -------------------------------------------------------------------------------------------------------- */
 
 static char *temporary(void)
 {
@@ -171,7 +173,8 @@ START_TEST(test_file_keeps_every_bit)
 	for (int k = 0; k < COLOUR_CLASSES; k++) {
 		ck_assert_mem_eq(model.class[k].mean, back.class[k].mean, sizeof(back.class[k].mean));
 		ck_assert_mem_eq(model.class[k].covariance, back.class[k].covariance, sizeof(back.class[k].covariance));
-		ck_assert(model.class[k].scale == back.class[k].scale && model.class[k].samples == back.class[k].samples);
+		ck_assert(model.class[k].scale == back.class[k].scale &&
+			  model.class[k].samples == back.class[k].samples);
 	}
 	unlink(temporary());
 }
@@ -202,8 +205,10 @@ START_TEST(test_file_errors_name_the_place)
 	expect_error("{\n\"unknown_distance\": \"far\",\n\"classes\": {}}", ":2");
 	expect_error("{\n\"unknown_distance\": 9,\n\"classes\": {\n\"MAUVE\": {}}}", ":4: MAUVE");
 	expect_error("{\n\"unknown_distance\": 9,\n\"classes\": {\n\"RED\": {\n\"samples\": 0}}}", ":5: RED.samples");
-	expect_error("{\n\"unknown_distance\": 9,\n\"classes\": {\n\"RED\": {\"samples\": 5, \"scale\": 1, \"scale_spread\": 1,\n"
-		     "\"mean\": [1, 2]}}}", ":5: RED.mean");
+	expect_error("{\n\"unknown_distance\": 9,\n\"classes\": {\n\"RED\": {\"samples\": 5, \"scale\": 1, "
+		     "\"scale_spread\": 1,\n"
+		     "\"mean\": [1, 2]}}}",
+		     ":5: RED.mean");
 	expect_error("{\"unknown_distance\": -1, \"classes\": {}}", "unknown_distance");
 	ck_assert_int_lt(colour_file_read("/nowhere/colours.json", &model, err, sizeof(err)), 0);
 	ck_assert_ptr_nonnull(strstr(err, "/nowhere/colours.json"));

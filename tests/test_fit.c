@@ -13,8 +13,10 @@ static double ray_to_centre(const struct camera *camera, vec2 px, vec2 pos, doub
 	vec2 floor;
 	camera_centre(camera, eye);
 	ck_assert(camera_unproject(camera, px, 0, &floor));
-	double ray[3] = {floor.x - eye[0], floor.y - eye[1], -eye[2]}, d[3] = {pos.x - eye[0], pos.y - eye[1], radius - eye[2]};
-	double cx = ray[1] * d[2] - ray[2] * d[1], cy = ray[2] * d[0] - ray[0] * d[2], cz = ray[0] * d[1] - ray[1] * d[0];
+	double ray[3] = {floor.x - eye[0], floor.y - eye[1], -eye[2]},
+	       d[3] = {pos.x - eye[0], pos.y - eye[1], radius - eye[2]};
+	double cx = ray[1] * d[2] - ray[2] * d[1], cy = ray[2] * d[0] - ray[0] * d[2],
+	       cz = ray[0] * d[1] - ray[1] * d[0];
 	return sqrt((cx * cx + cy * cy + cz * cz) / (ray[0] * ray[0] + ray[1] * ray[1] + ray[2] * ray[2]));
 }
 
@@ -87,7 +89,8 @@ START_TEST(test_touching_balls_do_not_draw_each_other)
 	struct table table = scene_table();
 	struct image_buffer image = {0};
 	double d = 2 * table.ball_radius;
-	struct scene_ball ball[3] = {{{0.6, 0.2}, {20, 20, 220}}, {{0.6 + d, 0.2}, {20, 20, 220}},
+	struct scene_ball ball[3] = {{{0.6, 0.2}, {20, 20, 220}},
+				     {{0.6 + d, 0.2}, {20, 20, 220}},
 				     {{0.6 + d / 2, 0.2 + 0.8660254 * d}, {20, 20, 220}}};
 	scene_paint(&camera, &table, ball, 3, 2, &r, &image);
 	struct fit fit[3];
@@ -100,7 +103,10 @@ START_TEST(test_touching_balls_do_not_draw_each_other)
 				outline_of_ball(&camera, fit[i].pos, table.ball_radius, 1, &fit[i].outline);
 			other[i] = fit[i];
 		}
-		struct fit_view view = {.frame = &image.image, .camera = &camera, .radius = table.ball_radius, .other = other,
+		struct fit_view view = {.frame = &image.image,
+					.camera = &camera,
+					.radius = table.ball_radius,
+					.other = other,
 					.other_count = 3};
 		for (int i = 0; i < 3; i++)
 			ck_assert(fit_refine(&view, &fit[i], 2));

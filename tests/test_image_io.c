@@ -105,7 +105,8 @@ START_TEST(test_huge_headers_are_refused)
 	put_be32(png + 16, 100000);
 	put_be32(png + 20, 100000);
 	ck_assert_int_eq(image_decode(png, sizeof(png), &b, err, sizeof(err)), -EFBIG);
-	uint8_t jpeg[] = {0xff, 0xd8, 0xff, 0xc0, 0, 17, 8, 0xff, 0xff, 0xff, 0xff, 3, 1, 0x22, 0, 2, 0x11, 1, 3, 0x11, 1, 0xff, 0xd9};
+	uint8_t jpeg[] = {0xff, 0xd8, 0xff, 0xc0, 0,	17, 8, 0xff, 0xff, 0xff, 0xff, 3,
+			  1,	0x22, 0,    2,	  0x11, 1,  3, 0x11, 1,	   0xff, 0xd9};
 	ck_assert_int_eq(image_decode(jpeg, sizeof(jpeg), &b, err, sizeof(err)), -EFBIG);
 	ck_assert_int_lt(image_buffer_reserve(&b, 0, 5), 0);
 	ck_assert_int_lt(image_buffer_reserve(&b, IMAGE_SIDE_MAX + 1, 5), 0);
@@ -126,7 +127,8 @@ START_TEST(test_no_image_at_all)
 	fclose(file);
 	ck_assert_int_eq(image_read(path, &b, err, sizeof(err)), -EBADMSG);
 	ck_assert_int_lt(image_read("/tmp", &b, err, sizeof(err)), 0);
-	ck_assert_int_lt(image_write_png(&(struct image){(uint8_t[3]){0}, 1, 1, 3}, "/nowhere/a.png", err, sizeof(err)), 0);
+	ck_assert_int_lt(image_write_png(&(struct image){(uint8_t[3]){0}, 1, 1, 3}, "/nowhere/a.png", err, sizeof(err)),
+			 0);
 	image_buffer_finish(&b);
 }
 END_TEST

@@ -41,7 +41,8 @@ START_TEST(test_exact_corners_give_the_exact_pose)
 	struct marker_layout layout = scene_markers();
 	for (int i = 0; i < 100; i++) {
 		struct marker_view view[MARKER_MAX];
-		struct camera truth = scene_camera(random_in(&r, -0.25, 0.25), random_in(&r, -0.25, 0.25)), found = truth;
+		struct camera truth = scene_camera(random_in(&r, -0.25, 0.25), random_in(&r, -0.25, 0.25)),
+			      found = truth;
 		int count = see(&truth, &layout, random_in(&r, -0.8, 0.8), random_in(&r, 0.94, 1.02), view);
 		struct pose_fit fit;
 		ck_assert(pose_from_markers(&layout, view, count, &found, &fit));

@@ -65,7 +65,10 @@ static void scatter(struct random *r, int count)
 		vec2 p = {random_in(r, -hx, hx), random_in(r, -hy, hy)};
 		int n = rig->count;
 		if (is_free(p))
-			rig->ball[rig->count++] = ball_at(n == 0 ? COLOUR_WHITE : n < 7 ? (enum ball_colour)(n + 1) : COLOUR_RED, p);
+			rig->ball[rig->count++] = ball_at(n == 0  ? COLOUR_WHITE
+							  : n < 7 ? (enum ball_colour)(n + 1)
+								  : COLOUR_RED,
+							  p);
 	}
 }
 
@@ -75,7 +78,8 @@ static void rack(void)
 	rig->count = 0;
 	for (int row = 0; row < 5; row++)
 		for (int i = 0; i <= row; i++)
-			rig->ball[rig->count++] = ball_at(COLOUR_RED, (vec2){0.4 + row * d * 0.8660255, (i - row / 2.0) * d});
+			rig->ball[rig->count++] =
+				ball_at(COLOUR_RED, (vec2){0.4 + row * d * 0.8660255, (i - row / 2.0) * d});
 	rig->ball[rig->count++] = ball_at(COLOUR_WHITE, (vec2){-0.6, 0.1});
 }
 
@@ -95,7 +99,8 @@ static double check_found(void)
 	for (int i = 0; i < rig->count; i++) {
 		int best = 0;
 		for (int k = 1; k < rig->result.ball_count; k++)
-			if (vec2_dist(rig->result.ball[k].pos, rig->ball[i].pos) < vec2_dist(rig->result.ball[best].pos, rig->ball[i].pos))
+			if (vec2_dist(rig->result.ball[k].pos, rig->ball[i].pos) <
+			    vec2_dist(rig->result.ball[best].pos, rig->ball[i].pos))
 				best = k;
 		ck_assert_int_eq(rig->result.ball[best].colour, rig->ball[i].colour);
 		worst = fmax(worst, vec2_dist(rig->result.ball[best].pos, rig->ball[i].pos));
@@ -137,7 +142,8 @@ START_TEST(test_same_frame_same_bits)
 	first = rig->result;
 	detect(3);
 	for (int i = 0; i < first.ball_count; i++)
-		ck_assert(first.ball[i].pos.x == rig->result.ball[i].pos.x && first.ball[i].pos.y == rig->result.ball[i].pos.y);
+		ck_assert(first.ball[i].pos.x == rig->result.ball[i].pos.x &&
+			  first.ball[i].pos.y == rig->result.ball[i].pos.y);
 }
 END_TEST
 
@@ -210,13 +216,15 @@ START_TEST(test_bad_definitions_are_refused)
 }
 END_TEST
 
-/* ---- streams --------------------------------------------------------------------------------------------------------- */
+/* ---- streams
+ * --------------------------------------------------------------------------------------------------------- */
 
 static void track(int frame, double time)
 {
 	char err[256];
 	table_camera_render(rig->camera, rig->ball, rig->count, (uint64_t)frame, &rig->image.image);
-	ck_assert_msg(vision_track(rig->vision, &rig->image.image, time, &rig->result, err, sizeof(err)) == 0, "%s", err);
+	ck_assert_msg(vision_track(rig->vision, &rig->image.image, time, &rig->result, err, sizeof(err)) == 0, "%s",
+		      err);
 }
 
 static const struct vision_ball *found_at(vec2 pos, double reach)

@@ -45,7 +45,8 @@ static void compare(const json_t *entry, const struct vision_result *r, struct s
 	const json_t *ball;
 	bool used[VISION_BALL_MAX] = {false}, classed[VISION_BALL_MAX] = {false};
 	json_t *reference = json_object_get(entry, "reference"), *classes = json_object_get(entry, "classes");
-	json_array_foreach(reference, i, ball) {
+	json_array_foreach(reference, i, ball)
+	{
 		vec2 at = {number(ball, "x_mm") / 1000, number(ball, "y_mm") / 1000};
 		int k = nearest(r, used, at, false, 0.015);
 		s->balls++;
@@ -57,13 +58,16 @@ static void compare(const json_t *entry, const struct vision_result *r, struct s
 	}
 	for (int k = 0; k < r->ball_count && reference; k++)
 		s->ghosts += !used[k];
-	json_array_foreach(classes, i, ball) {
-		int k = nearest(r, classed, (vec2){number(ball, "px"), number(ball, "py")}, true, 10 * r->camera.in.width / 1280.0);
+	json_array_foreach(classes, i, ball)
+	{
+		int k = nearest(r, classed, (vec2){number(ball, "px"), number(ball, "py")}, true,
+				10 * r->camera.in.width / 1280.0);
 		if (k < 0)
 			continue;
 		classed[k] = true;
 		s->labelled++;
-		s->right += strcmp(ball_colour_name(r->ball[k].colour), json_string_value(json_object_get(ball, "type"))) == 0;
+		s->right += strcmp(ball_colour_name(r->ball[k].colour),
+				   json_string_value(json_object_get(ball, "type"))) == 0;
 	}
 }
 
@@ -94,7 +98,8 @@ START_TEST(test_photographs)
 	json_t *labels = json_load_file(path, 0, NULL);
 	ck_assert_ptr_nonnull(labels);
 	struct vision *vision = make_vision(&config, &colours);
-	json_array_foreach(labels, i, entry) {
+	json_array_foreach(labels, i, entry)
+	{
 		const char *name = json_string_value(json_object_get(entry, "image"));
 		struct vision_result r;
 		snprintf(path, sizeof(path), "%s/photos/%s", data, name);
@@ -109,8 +114,8 @@ START_TEST(test_photographs)
 		}
 	}
 	qsort(s.error, (size_t)s.errors, sizeof(*s.error), by_value);
-	printf("photographs: %d images, %d balls, %d lost, %d ghosts, median %.2f mm, colours %d of %d\n", s.images, s.balls, s.lost,
-	       s.ghosts, s.error[s.errors / 2], s.right, s.labelled);
+	printf("photographs: %d images, %d balls, %d lost, %d ghosts, median %.2f mm, colours %d of %d\n", s.images,
+	       s.balls, s.lost, s.ghosts, s.error[s.errors / 2], s.right, s.labelled);
 	ck_assert_int_eq(s.lost, 0);
 	ck_assert_int_eq(s.ghosts, 0);
 	ck_assert_double_lt(s.error[s.errors / 2], 1.6);

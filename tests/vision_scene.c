@@ -5,7 +5,7 @@
 
 #include "vision/marker_image_cv.h"
 
-enum { SUB = 4 };	/* samples a side of a pixel */
+enum { SUB = 4 }; /* samples a side of a pixel */
 static const uint8_t CLOTH[3] = {120, 150, 95}, AROUND[3] = {30, 40, 90};
 
 struct table scene_table(void)
@@ -13,15 +13,20 @@ struct table scene_table(void)
 	struct table table = {.length = 1.881, .width = 0.943, .ball_radius = 0.02615, .pocket_count = 6};
 	for (int i = 0; i < 6; i++)
 		table.pocket[i] = (struct pocket){
-			.centre = {(i % 3 - 1) * 0.9405, (i / 3 * 2 - 1) * (i % 3 == 1 ? 0.4915 : 0.4715)}, .radius = 0.05};
+			.centre = {(i % 3 - 1) * 0.9405, (i / 3 * 2 - 1) * (i % 3 == 1 ? 0.4915 : 0.4715)},
+			.radius = 0.05};
 	return table;
 }
 
 struct marker_layout scene_markers(void)
 {
-	return (struct marker_layout){.dictionary_count = 4, .dictionary_bits = 3, .side = 0.05, .height = 0.0381, .count = 4,
-				      .marker = {{0, {-0.8615, -0.543}}, {1, {0.8605, -0.543}}, {2, {0.8605, 0.541}},
-						 {3, {-0.8615, 0.542}}}};
+	return (struct marker_layout){
+		.dictionary_count = 4,
+		.dictionary_bits = 3,
+		.side = 0.05,
+		.height = 0.0381,
+		.count = 4,
+		.marker = {{0, {-0.8615, -0.543}}, {1, {0.8605, -0.543}}, {2, {0.8605, 0.541}}, {3, {-0.8615, 0.542}}}};
 }
 
 struct camera scene_camera(double tilt_x, double tilt_y)
@@ -37,8 +42,8 @@ struct camera scene_camera(double tilt_x, double tilt_y)
 }
 
 /* Colour of the ray through a pixel: the nearest sphere it meets, or the bed. */
-static const uint8_t *trace(const struct camera *camera, const struct table *table, const struct scene_ball *ball, int count,
-			    vec2 px)
+static const uint8_t *trace(const struct camera *camera, const struct table *table, const struct scene_ball *ball,
+			    int count, vec2 px)
 {
 	double eye[3], ray[3], best = INFINITY;
 	vec2 floor;
@@ -51,7 +56,8 @@ static const uint8_t *trace(const struct camera *camera, const struct table *tab
 		colour = CLOTH;
 	for (int i = 0; i < count; i++) {
 		double d[3] = {ball[i].pos.x - eye[0], ball[i].pos.y - eye[1], table->ball_radius - eye[2]};
-		double dr = d[0] * ray[0] + d[1] * ray[1] + d[2] * ray[2], rr = ray[0] * ray[0] + ray[1] * ray[1] + ray[2] * ray[2];
+		double dr = d[0] * ray[0] + d[1] * ray[1] + d[2] * ray[2],
+		       rr = ray[0] * ray[0] + ray[1] * ray[1] + ray[2] * ray[2];
 		double dd = d[0] * d[0] + d[1] * d[1] + d[2] * d[2];
 		double under = dr * dr - rr * (dd - table->ball_radius * table->ball_radius);
 		if (under > 0 && dr / rr < best) {
@@ -68,7 +74,8 @@ double scene_gauss(struct random *random)
 	return sqrt(-2 * log(u)) * cos(v);
 }
 
-static bool near_ball(const struct camera *camera, const struct table *table, const struct scene_ball *ball, int count, vec2 px)
+static bool near_ball(const struct camera *camera, const struct table *table, const struct scene_ball *ball, int count,
+		      vec2 px)
 {
 	for (int i = 0; i < count; i++) {
 		vec2 p;
@@ -95,7 +102,8 @@ void scene_paint(const struct camera *camera, const struct table *table, const s
 			}
 			for (int k = 0; k < 3; k++) {
 				double v = sum[k] + (noise > 0 ? noise * scene_gauss(random) : 0);
-				out->image.data[y * out->image.stride + 3 * x + k] = (uint8_t)fmin(fmax(v + 0.5, 0), 255);
+				out->image.data[y * out->image.stride + 3 * x + k] =
+					(uint8_t)fmin(fmax(v + 0.5, 0), 255);
 			}
 		}
 }
@@ -128,14 +136,16 @@ void scene_paint_markers(const struct camera *camera, const struct marker_layout
 				for (int i = 0; i < 16; i++) {
 					vec2 at, px = {x + (i % 4 + 0.5) / 4 - 0.5, y + (i / 4 + 0.5) / 4 - 0.5};
 					camera_unproject(camera, px, layout->height, &at);
-					double u = (at.x - layout->marker[m].centre.x) / half, v = -(at.y - layout->marker[m].centre.y) / half;
+					double u = (at.x - layout->marker[m].centre.x) / half,
+					       v = -(at.y - layout->marker[m].centre.y) / half;
 					if (fabs(u) > 1.45 || fabs(v) > 1.45)
 						continue;
 					inside++;
 					white += marker_white(bits, side, u, v);
 				}
 				if (inside == 16)
-					memset(out->image.data + y * out->image.stride + 3 * x, 20 + white * 210 / 16, 3);
+					memset(out->image.data + y * out->image.stride + 3 * x, 20 + white * 210 / 16,
+					       3);
 			}
 	}
 }

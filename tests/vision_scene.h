@@ -1,4 +1,5 @@
-/* Pictures with known truth for the vision tests: spheres traced ray by ray, which shares nothing with the code under test. */
+/* Pictures with known truth for the vision tests: spheres traced ray by ray, which shares nothing with the code under
+ * test. */
 #ifndef BILLIARD_TESTS_VISION_SCENE_H
 #define BILLIARD_TESTS_VISION_SCENE_H
 
@@ -18,7 +19,8 @@ struct scene_ball {
 	uint8_t bgr[3];
 };
 
-/* Cloth, balls (flat colours), grey noise of that standard deviation. out: an image of the camera's size is reserved. */
+/* Cloth, balls (flat colours), grey noise of that standard deviation. out: an image of the camera's size is reserved.
+ */
 void scene_paint(const struct camera *camera, const struct table *table, const struct scene_ball *ball, int count,
 		 double noise, struct random *random, struct image_buffer *out);
 /* Adds the markers with their white paper. */

@@ -11,8 +11,8 @@
 #include "vision/image_io_cv.h"
 
 enum { RACK_REDS = 15, OPENING_BALLS = 22 };
-static const double SPOT_REACH = 0.035;		/* m from its spot that a colour may lie in the opening position */
-static const double LABEL_REACH = 8;		/* px at 1280 from its label that a ball may be found */
+static const double SPOT_REACH = 0.035; /* m from its spot that a colour may lie in the opening position */
+static const double LABEL_REACH = 8;	/* px at 1280 from its label that a ball may be found */
 
 struct options {
 	const char *config, *labels, *out, *without;
@@ -37,9 +37,12 @@ static void help(void)
 {
 	puts("usage: billiard calibrate colours [-c CONF] [--labels LABELS.json] [-o OUT.json] IMAGE...\n\n"
 	     "  -c, --config CONF       table, default $BILLIARD_CONF or the installed one\n"
-	     "  --labels LABELS.json    a list of {\"image\": \"a.png\", \"classes\": [{\"type\": \"RED\", \"px\": 1, \"py\": 2}, ...]};\n"
-	     "                          an image is found by the end of its path. Without it every photograph must show the\n"
-	     "                          opening position: colours on their spots, fifteen reds, the white ball anywhere\n"
+	     "  --labels LABELS.json    a list of {\"image\": \"a.png\", \"classes\": [{\"type\": \"RED\", \"px\": 1, "
+	     "\"py\": 2}, ...]};\n"
+	     "                          an image is found by the end of its path. Without it every photograph must "
+	     "show the\n"
+	     "                          opening position: colours on their spots, fifteen reds, the white ball "
+	     "anywhere\n"
 	     "  --without NAME          leaves out images whose path contains NAME (to judge what was learned)\n"
 	     "  -o, --output OUT.json   default: the colour file of the configuration");
 }
@@ -49,9 +52,12 @@ static int parse(struct options *options, int argc, char **argv)
 {
 	enum { OPT_LABELS = 256, OPT_WITHOUT };
 	static const struct option table[] = {
-		{"config", required_argument, NULL, 'c'},	  {"labels", required_argument, NULL, OPT_LABELS},
-		{"without", required_argument, NULL, OPT_WITHOUT}, {"output", required_argument, NULL, 'o'},
-		{"help", no_argument, NULL, 'h'},		  {NULL, 0, NULL, 0},
+		{"config", required_argument, NULL, 'c'},
+		{"labels", required_argument, NULL, OPT_LABELS},
+		{"without", required_argument, NULL, OPT_WITHOUT},
+		{"output", required_argument, NULL, 'o'},
+		{"help", no_argument, NULL, 'h'},
+		{NULL, 0, NULL, 0},
 	};
 	int c;
 	while ((c = getopt_long(argc, argv, "c:o:h", table, NULL)) != -1) {
@@ -91,14 +97,16 @@ static int remember(struct samples *s, const struct colour_sample *sample)
 	return 0;
 }
 
-/* ---- which ball has which colour ------------------------------------------------------------------------------------- */
+/* ---- which ball has which colour
+ * ------------------------------------------------------------------------------------- */
 
 /* The label file's entry whose image is the end of path. */
 static const json_t *entry_of(const json_t *labels, const char *path)
 {
 	size_t i;
 	const json_t *entry;
-	json_array_foreach((json_t *)labels, i, entry) {
+	json_array_foreach((json_t *)labels, i, entry)
+	{
 		const char *image = json_string_value(json_object_get(entry, "image"));
 		size_t n = image ? strlen(image) : 0, m = strlen(path);
 		if (n > 0 && n <= m && strcmp(path + m - n, image) == 0 && (n == m || path[m - n - 1] == '/'))
@@ -112,13 +120,16 @@ static void colours_from_labels(const json_t *classes, const struct vision_resul
 	double reach = LABEL_REACH * result->camera.in.width / 1280;
 	size_t i;
 	const json_t *label;
-	json_array_foreach((json_t *)classes, i, label) {
+	json_array_foreach((json_t *)classes, i, label)
+	{
 		const char *type = json_string_value(json_object_get(label, "type"));
 		enum ball_colour colour;
-		vec2 px = {json_number_value(json_object_get(label, "px")), json_number_value(json_object_get(label, "py"))};
+		vec2 px = {json_number_value(json_object_get(label, "px")),
+			   json_number_value(json_object_get(label, "py"))};
 		int best = -1;
 		for (int b = 0; b < result->ball_count; b++)
-			if (vec2_dist(result->ball[b].px, px) < (best < 0 ? reach : vec2_dist(result->ball[best].px, px)))
+			if (vec2_dist(result->ball[b].px, px) <
+			    (best < 0 ? reach : vec2_dist(result->ball[best].px, px)))
 				best = b;
 		if (best >= 0 && type && ball_colour_from_name(type, &colour))
 			out[best] = colour;
@@ -157,7 +168,8 @@ static bool colours_from_opening(const struct table *table, const struct vision_
 	return true;
 }
 
-/* ---- learning -------------------------------------------------------------------------------------------------------- */
+/* ---- learning
+ * -------------------------------------------------------------------------------------------------------- */
 
 static int label_balls(const struct learner *l, const char *path, enum ball_colour *colour)
 {
@@ -173,7 +185,8 @@ static int label_balls(const struct learner *l, const char *path, enum ball_colo
 		return CMD_OK;
 	}
 	if (!colours_from_opening(&l->config.table, &l->result, colour))
-		return cmd_bad_input("%s: not the opening position (%d balls found); give --labels", path, l->result.ball_count);
+		return cmd_bad_input("%s: not the opening position (%d balls found); give --labels", path,
+				     l->result.ball_count);
 	return CMD_OK;
 }
 

@@ -10,7 +10,8 @@
 #include "app/text_file.h"
 
 enum { FILE_SIZE_MAX = 1 << 20 };
-static const char *const feature_name[COLOUR_FEATURES] = {"ln b/cloth", "ln g/cloth", "ln r/cloth", "ln b/g", "ln r/g", "grey"};
+static const char *const feature_name[COLOUR_FEATURES] = {"ln b/cloth", "ln g/cloth", "ln r/cloth",
+							  "ln b/g",	"ln r/g",     "grey"};
 
 /* What the reader knows of the file, for errors. */
 struct reader {
@@ -109,7 +110,8 @@ static int read_model(const struct reader *r, const json_t *root, struct colour_
 		return rc;
 	if (!json_is_object(classes))
 		return complain(r, NULL, "classes", "an object with a member per colour is wanted");
-	json_object_foreach(classes, name, object) {
+	json_object_foreach(classes, name, object)
+	{
 		if (!ball_colour_from_name(name, &colour) || colour == COLOUR_UNKNOWN)
 			return complain(r, NULL, name, "is no colour");
 		rc = read_class(r, name, object, &out->class[colour]);
@@ -176,7 +178,8 @@ int colour_file_write(const char *path, const struct colour_model *model, char *
 		json_array_append_new(names, json_string(feature_name[i]));
 	for (int k = 0; k < COLOUR_CLASSES; k++)
 		if (model->class[k].samples > 0)
-			json_object_set_new(classes, ball_colour_name((enum ball_colour)k), class_object(&model->class[k]));
+			json_object_set_new(classes, ball_colour_name((enum ball_colour)k),
+					    class_object(&model->class[k]));
 	json_object_set_new(root, "features", names);
 	json_object_set_new(root, "unknown_distance", json_real(model->unknown_distance));
 	json_object_set_new(root, "classes", classes);

@@ -7,7 +7,7 @@
 #include "vision/marker_edges.h"
 
 enum { AVERAGED_MAX = 50, FULL_SEARCH_EVERY = 5 };
-static const double BUMP_PX = 1.5;	/* at 1280 px: corners further off than this were moved, not noisy */
+static const double BUMP_PX = 1.5; /* at 1280 px: corners further off than this were moved, not noisy */
 
 int calibration_init(struct calibration *c, const struct marker_layout *layout, double interval, double keep, char *err,
 		     size_t err_size)
@@ -29,7 +29,8 @@ void calibration_reset(struct calibration *c)
 }
 
 /* Markers that do not belong to the layout are somebody else's; the others' corners are refined. */
-static int keep_known(const struct marker_layout *layout, const struct image *frame, struct marker_view *view, int count)
+static int keep_known(const struct marker_layout *layout, const struct image *frame, struct marker_view *view,
+		      int count)
 {
 	int kept = 0;
 	for (int i = 0; i < count; i++)
@@ -42,8 +43,8 @@ static int keep_known(const struct marker_layout *layout, const struct image *fr
 	return kept;
 }
 
-static bool find_pose(struct calibration *c, const struct marker_view *view, int count, const struct camera_intrinsics *in,
-		      char *reason, size_t reason_size)
+static bool find_pose(struct calibration *c, const struct marker_view *view, int count,
+		      const struct camera_intrinsics *in, char *reason, size_t reason_size)
 {
 	struct camera camera = {.in = *in};
 	struct pose_fit fit;
@@ -145,8 +146,9 @@ static enum calibration_news without(struct calibration *c, double time, char *r
 	return CALIBRATION_LOST;
 }
 
-enum calibration_news calibration_track(struct calibration *c, const struct image *frame, const struct camera_intrinsics *in,
-					double time, bool urgent, char *reason, size_t reason_size)
+enum calibration_news calibration_track(struct calibration *c, const struct image *frame,
+					const struct camera_intrinsics *in, double time, bool urgent, char *reason,
+					size_t reason_size)
 {
 	struct marker_view view[MARKER_MAX];
 	if (!c->valid)

@@ -6,17 +6,17 @@
 #include "vision/pose.h"
 
 struct calibration {
-	const struct marker_layout *layout;	/* borrowed */
-	double interval, keep;			/* s: between searches; how long a pose outlives its markers */
-	struct marker_finder *finder;		/* owned */
+	const struct marker_layout *layout; /* borrowed */
+	double interval, keep;		    /* s: between searches; how long a pose outlives its markers */
+	struct marker_finder *finder;	    /* owned */
 	bool valid;
 	struct camera camera;
 	struct pose_fit fit;
-	struct marker_view seen[MARKER_MAX];	/* averaged corners, in order of id */
-	int seen_count, averaged;		/* markers; frames in the average */
-	int now_count;				/* markers of the last search */
-	double searched, found;			/* s: times of the last search and of the last pose */
-	int partial;				/* searches in a row that found less than before */
+	struct marker_view seen[MARKER_MAX]; /* averaged corners, in order of id */
+	int seen_count, averaged;	     /* markers; frames in the average */
+	int now_count;			     /* markers of the last search */
+	double searched, found;		     /* s: times of the last search and of the last pose */
+	int partial;			     /* searches in a row that found less than before */
 };
 
 enum calibration_news { CALIBRATION_SAME, CALIBRATION_REFINED, CALIBRATION_MOVED, CALIBRATION_LOST };
@@ -30,9 +30,10 @@ void calibration_reset(struct calibration *c);
 /* From one frame alone. in: constants for the frame's size. False, with the reason, when there is no pose. */
 bool calibration_single(struct calibration *c, const struct image *frame, const struct camera_intrinsics *in,
 			char *reason, size_t reason_size);
-/* The next frame of a stream. urgent: much of the picture changed, the camera may have been bumped. MOVED: the pose is new
- * and former pixels mean nothing any more. LOST: there is none (any more), with the reason. */
-enum calibration_news calibration_track(struct calibration *c, const struct image *frame, const struct camera_intrinsics *in,
-					double time, bool urgent, char *reason, size_t reason_size);
+/* The next frame of a stream. urgent: much of the picture changed, the camera may have been bumped. MOVED: the pose is
+ * new and former pixels mean nothing any more. LOST: there is none (any more), with the reason. */
+enum calibration_news calibration_track(struct calibration *c, const struct image *frame,
+					const struct camera_intrinsics *in, double time, bool urgent, char *reason,
+					size_t reason_size);
 
 #endif

@@ -3,7 +3,7 @@
 #include <assert.h>
 #include <math.h>
 
-static const double MIN_DEPTH = 1e-6;	/* m; nearer points are behind the camera */
+static const double MIN_DEPTH = 1e-6; /* m; nearer points are behind the camera */
 static const double ASPECT_TOLERANCE = 0.01;
 enum { UNDISTORT_STEPS = 20 };
 
@@ -40,7 +40,8 @@ static bool is_distorted(const struct camera_intrinsics *in)
 	return in->k1 != 0 || in->k2 != 0 || in->k3 != 0 || in->p1 != 0 || in->p2 != 0;
 }
 
-/* Newton with the distortion's own Jacobian by differences: converges in a few steps for every lens that images a table. */
+/* Newton with the distortion's own Jacobian by differences: converges in a few steps for every lens that images a
+ * table. */
 static vec2 undistort(const struct camera_intrinsics *in, vec2 d)
 {
 	const double h = 1e-6;

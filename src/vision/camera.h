@@ -7,15 +7,15 @@
 #include "physics/vec2.h"
 
 struct camera_intrinsics {
-	int width, height;	/* px the constants hold for */
-	double fx, fy, cx, cy;	/* px, pixel centres at whole numbers */
-	double k1, k2, p1, p2, k3;	/* OpenCV's distortion model */
+	int width, height;	   /* px the constants hold for */
+	double fx, fy, cx, cy;	   /* px, pixel centres at whole numbers */
+	double k1, k2, p1, p2, k3; /* OpenCV's distortion model */
 };
 
 /* Table to camera: X_cam = R X_table + t, m. Camera looks along +z, x right, y down. */
 struct camera_pose {
-	double r[9];		/* row by row */
-	double t[3];		/* m */
+	double r[9]; /* row by row */
+	double t[3]; /* m */
 };
 
 struct camera {

@@ -18,17 +18,18 @@
 struct capture {
 	std::string source;
 	bool live = false;
-	std::vector<std::string> files;	/* a folder's, or a single image */
+	std::vector<std::string> files; /* a folder's, or a single image */
 	size_t next_file = 0;
 	cv::VideoCapture video;
 	cv::Mat mat;
 	double fps = 30;
-	long announced = 0;	/* frames a video says it has; 0 unknown */
+	long announced = 0; /* frames a video says it has; 0 unknown */
 	bool ended = false;
 	int index = 0;
 };
 
-namespace {
+namespace
+{
 
 namespace fs = std::filesystem;
 
@@ -90,7 +91,8 @@ int open_folder(capture *c, const std::string &path, char *err, size_t err_size)
 	if (code)
 		return vision_fail(-code.value(), err, err_size, "%s: %s", path.c_str(), code.message().c_str());
 	if (c->files.empty())
-		return vision_fail(-EINVAL, err, err_size, "%s: the folder holds no PNG, JPEG or BMP image", path.c_str());
+		return vision_fail(-EINVAL, err, err_size, "%s: the folder holds no PNG, JPEG or BMP image",
+				   path.c_str());
 	std::sort(c->files.begin(), c->files.end(), natural_less);
 	return 0;
 }
@@ -146,7 +148,8 @@ int open_source(capture *c, const capture_def *def, char *err, size_t err_size)
 		return open_folder(c, c->source.substr(4), err, err_size);
 	if (c->source.rfind("file:", 0) == 0)
 		return open_file(c, c->source.substr(5), err, err_size);
-	return vision_fail(-EINVAL, err, err_size, "unknown source \"%s\": v4l2:DEVICE, dir:FOLDER or file:FILE", def->source);
+	return vision_fail(-EINVAL, err, err_size, "unknown source \"%s\": v4l2:DEVICE, dir:FOLDER or file:FILE",
+			   def->source);
 }
 
 void describe(capture *c, const std::string &name, capture_frame *frame)
@@ -175,8 +178,8 @@ int end_of_video(capture *c, char *err, size_t err_size)
 	c->ended = true;
 	/* Containers may count a frame or two more than they hold. */
 	if (first && (c->index == 0 || c->index + 2 < c->announced))
-		return vision_fail(-EBADMSG, err, err_size, "%s: ends after %d of %ld frames", c->source.c_str(), c->index,
-			    c->announced);
+		return vision_fail(-EBADMSG, err, err_size, "%s: ends after %d of %ld frames", c->source.c_str(),
+				   c->index, c->announced);
 	return 0;
 }
 
@@ -190,7 +193,8 @@ int next_video(capture *c, image_buffer *image, capture_frame *frame, char *err,
 		return vision_fail(-EBADMSG, err, err_size, "%s: frames are not 8-bit BGR", c->source.c_str());
 	int rc = image_buffer_reserve(image, c->mat.cols, c->mat.rows);
 	if (rc < 0)
-		return vision_fail(rc, err, err_size, "%s: %d x %d pixels", c->source.c_str(), c->mat.cols, c->mat.rows);
+		return vision_fail(rc, err, err_size, "%s: %d x %d pixels", c->source.c_str(), c->mat.cols,
+				   c->mat.rows);
 	cv::Mat view(c->mat.rows, c->mat.cols, CV_8UC3, image->image.data, (size_t)image->image.stride);
 	c->mat.copyTo(view);
 	describe(c, c->source, frame);

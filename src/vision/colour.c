@@ -9,15 +9,16 @@
 #include "vision/reason.h"
 
 enum { F = COLOUR_FEATURES, SIDE_SAMPLES = 17, SAMPLE_MAX = SIDE_SAMPLES * SIDE_SAMPLES, CLASS_SAMPLES_MIN = 3 };
-static const double INSIDE = 0.75;		/* of the outline: its rim mixes with the cloth */
-static const double FLOOR = 6;			/* levels added before a logarithm: noise of black */
+static const double INSIDE = 0.75; /* of the outline: its rim mixes with the cloth */
+static const double FLOOR = 6;	   /* levels added before a logarithm: noise of black */
 /* Spread added to every class, as standard deviations: light that differs from what was learned. */
 static const double SPREAD[F] = {0.10, 0.10, 0.10, 0.10, 0.10, 0.05};
-static const double POOLED_SHARE = 0.3;		/* of the classes' common covariance in each class' own */
-static const double SCALE_FLOOR = 0.01;	/* least spread of the apparent radius */
+static const double POOLED_SHARE = 0.3; /* of the classes' common covariance in each class' own */
+static const double SCALE_FLOOR = 0.01; /* least spread of the apparent radius */
 static const double UNKNOWN_DISTANCE = 9;
 
-/* ---- measuring ------------------------------------------------------------------------------------------------------- */
+/* ---- measuring
+ * ------------------------------------------------------------------------------------------------------- */
 
 struct pixels {
 	int count;
@@ -33,7 +34,8 @@ static void gather(const struct image *frame, const struct outline *o, struct pi
 			double dx = (j - SIDE_SAMPLES / 2) * step, dy = (i - SIDE_SAMPLES / 2) * step;
 			int x = (int)lround(o->centre.x + dx), y = (int)lround(o->centre.y + dy);
 			double reach = INSIDE * o->radius_px;
-			if (dx * dx + dy * dy > reach * reach || x < 0 || y < 0 || x >= frame->width || y >= frame->height)
+			if (dx * dx + dy * dy > reach * reach || x < 0 || y < 0 || x >= frame->width ||
+			    y >= frame->height)
 				continue;
 			const uint8_t *p = frame->data + y * frame->stride + 3 * x;
 			for (int c = 0; c < 3; c++)
@@ -76,7 +78,8 @@ struct colour_feature colour_measure(const struct image *frame, const struct out
 	return f;
 }
 
-/* ---- learning -------------------------------------------------------------------------------------------------------- */
+/* ---- learning
+ * -------------------------------------------------------------------------------------------------------- */
 
 /* Mean and spread of the apparent radius; fits that went wrong are left out. */
 static void class_scale(const struct colour_sample *sample, int count, int class, struct colour_class *out)
@@ -149,20 +152,23 @@ int colour_learn(const struct colour_sample *sample, int count, struct colour_mo
 		class_moments(sample, count, k, &model.class[k]);
 		if (model.class[k].samples > 0 && model.class[k].samples < CLASS_SAMPLES_MIN)
 			return vision_fail(-EINVAL, err, err_size, "only %d samples of %s, at least %d are needed",
-					   model.class[k].samples, ball_colour_name((enum ball_colour)k), CLASS_SAMPLES_MIN);
+					   model.class[k].samples, ball_colour_name((enum ball_colour)k),
+					   CLASS_SAMPLES_MIN);
 	}
 	pool(&model, pooled);
 	for (int k = 0; k < COLOUR_CLASSES; k++)
 		for (int a = 0; a < F; a++)
 			for (int b = 0; b < F; b++) {
 				double *c = &model.class[k].covariance[a][b];
-				*c = (1 - POOLED_SHARE) * *c + POOLED_SHARE * pooled[a][b] + (a == b ? SPREAD[a] * SPREAD[a] : 0);
+				*c = (1 - POOLED_SHARE) * *c + POOLED_SHARE * pooled[a][b] +
+				     (a == b ? SPREAD[a] * SPREAD[a] : 0);
 			}
 	*out = model;
 	return 0;
 }
 
-/* ---- using ----------------------------------------------------------------------------------------------------------- */
+/* ---- using
+ * ----------------------------------------------------------------------------------------------------------- */
 
 static bool invert(const double m[F][F], double out[F][F])
 {
@@ -201,20 +207,23 @@ static int check_class(const struct colour_class *class, const char *name, char 
 		return 0;
 	for (int a = 0; a < F; a++) {
 		if (!isfinite(class->mean[a]) || fabs(class->mean[a]) > 100)
-			return vision_fail(-EINVAL, err, err_size, "%s: mean[%d] = %g, allowed -100..100", name, a, class->mean[a]);
+			return vision_fail(-EINVAL, err, err_size, "%s: mean[%d] = %g, allowed -100..100", name, a,
+					   class->mean[a]);
 		for (int b = 0; b < F; b++)
 			if (!isfinite(class->covariance[a][b]) || class->covariance[a][b] != class->covariance[b][a] ||
 			    fabs(class->covariance[a][b]) > 1e4)
-				return vision_fail(-EINVAL, err, err_size, "%s: covariance[%d][%d] = %g is not a symmetric matrix's",
-						   name, a, b, class->covariance[a][b]);
+				return vision_fail(-EINVAL, err, err_size,
+						   "%s: covariance[%d][%d] = %g is not a symmetric matrix's", name, a,
+						   b, class->covariance[a][b]);
 		if (class->covariance[a][a] < 1e-9)
-			return vision_fail(-EINVAL, err, err_size, "%s: covariance[%d][%d] = %g, at least 1e-9", name, a, a,
-					   class->covariance[a][a]);
+			return vision_fail(-EINVAL, err, err_size, "%s: covariance[%d][%d] = %g, at least 1e-9", name,
+					   a, a, class->covariance[a][a]);
 	}
 	if (!(class->scale >= 0.5 && class->scale <= 1.5))
 		return vision_fail(-EINVAL, err, err_size, "%s: scale = %g, allowed 0.5..1.5", name, class->scale);
 	if (!(class->scale_spread > 0 && class->scale_spread <= 1))
-		return vision_fail(-EINVAL, err, err_size, "%s: scale_spread = %g, allowed 0..1", name, class->scale_spread);
+		return vision_fail(-EINVAL, err, err_size, "%s: scale_spread = %g, allowed 0..1", name,
+				   class->scale_spread);
 	if (!invert(class->covariance, inverse))
 		return vision_fail(-EINVAL, err, err_size, "%s: the covariance is not positive definite", name);
 	return 0;
@@ -223,7 +232,8 @@ static int check_class(const struct colour_class *class, const char *name, char 
 int colour_model_check(const struct colour_model *model, char *err, size_t err_size)
 {
 	if (!(model->unknown_distance > 0) || !(model->unknown_distance < 1e6))
-		return vision_fail(-EINVAL, err, err_size, "unknown_distance = %g, allowed 0..1e6", model->unknown_distance);
+		return vision_fail(-EINVAL, err, err_size, "unknown_distance = %g, allowed 0..1e6",
+				   model->unknown_distance);
 	for (int k = 0; k < COLOUR_CLASSES; k++) {
 		int rc = check_class(&model->class[k], ball_colour_name((enum ball_colour)k), err, err_size);
 		if (rc < 0)
@@ -320,8 +330,8 @@ void colour_assign(const struct colour_classifier *classifier, const struct colo
 	}
 	for (int k = 0; k < COLOUR_COUNT; k++)
 		holder[k] = -1;
-	/* Every ball asks for its best class; of two that want a class that exists once, the one that would lose more by going
-	 * without keeps it and the other asks for its next best. Each round refuses something, so it ends. */
+	/* Every ball asks for its best class; of two that want a class that exists once, the one that would lose more
+	 * by going without keeps it and the other asks for its next best. Each round refuses something, so it ends. */
 	for (bool moved = true; moved;) {
 		moved = false;
 		for (int i = 0; i < count; i++) {
@@ -344,5 +354,5 @@ void colour_assign(const struct colour_classifier *classifier, const struct colo
 		}
 	}
 	for (int i = 0; i < count; i++)
-		out[i] = (struct colour_verdict){(enum ball_colour)class[i], certainty(likely[i], class[i])};
+		out[i] = (struct colour_verdict){(enum ball_colour) class[i], certainty(likely[i], class[i])};
 }

@@ -1,4 +1,5 @@
-/* Colour classes of balls, relative to the local cloth colour. Parameters come from a file that the application reads. */
+/* Colour classes of balls, relative to the local cloth colour. Parameters come from a file that the application reads.
+ */
 #ifndef BILLIARD_VISION_COLOUR_H
 #define BILLIARD_VISION_COLOUR_H
 
@@ -23,14 +24,14 @@ struct colour_feature {
 struct colour_class {
 	int samples;
 	double mean[COLOUR_FEATURES];
-	double covariance[COLOUR_FEATURES][COLOUR_FEATURES];	/* symmetric, positive definite */
-	double scale, scale_spread;	/* apparent radius over the true one, and its standard deviation; 0.5..1.5, > 0 */
+	double covariance[COLOUR_FEATURES][COLOUR_FEATURES]; /* symmetric, positive definite */
+	double scale, scale_spread; /* apparent radius over the true one, and its standard deviation; 0.5..1.5, > 0 */
 };
 
 /* Plain numbers, filled by the application (app/colour_file.h reads and writes the file). */
 struct colour_model {
-	struct colour_class class[COLOUR_CLASSES];	/* by enum ball_colour */
-	double unknown_distance;	/* Mahalanobis distance to the nearest class beyond which a ball is unknown, > 0 */
+	struct colour_class class[COLOUR_CLASSES]; /* by enum ball_colour */
+	double unknown_distance; /* Mahalanobis distance to the nearest class beyond which a ball is unknown, > 0 */
 };
 
 /* 0, or -EINVAL with the reason (which class, which number). */
@@ -42,7 +43,7 @@ struct colour_feature colour_measure(const struct image *frame, const struct out
 /* A ball of known colour. */
 struct colour_sample {
 	struct colour_feature feature;
-	double scale;		/* apparent radius over the true one, from its fit */
+	double scale; /* apparent radius over the true one, from its fit */
 	enum ball_colour colour;
 };
 
@@ -51,7 +52,7 @@ int colour_learn(const struct colour_sample *sample, int count, struct colour_mo
 
 struct colour_verdict {
 	enum ball_colour colour;
-	double confidence;	/* 0..1 */
+	double confidence; /* 0..1 */
 };
 
 /* Ready for use: inverses of the covariances. */

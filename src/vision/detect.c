@@ -3,24 +3,26 @@
 #include <math.h>
 #include <string.h>
 
-static const double EDGE_SLACK = 0.007;		/* m a fitted centre may lie beyond where cushions let it be */
-static const double MOUTH_INNER = 0.8;		/* of a pocket's radius: nearer to its centre a ball has fallen */
+static const double EDGE_SLACK = 0.007; /* m a fitted centre may lie beyond where cushions let it be */
+static const double MOUTH_INNER = 0.8;	/* of a pocket's radius: nearer to its centre a ball has fallen */
 static const double SUPPORT_SEED = 0.42, SUPPORT_PACKED = 0.33, SUPPORT_MIN = 0.55;
 static const double CLOTH_OFF = 0.22, CLOTH_OFF_RIM = 0.1, CLOTH_RIM = 0.85;
-static const double CLOTH_DARK = -0.8, CLOTH_LIGHT = 0.3;	/* ln of levels over the cloth's */
+static const double CLOTH_DARK = -0.8, CLOTH_LIGHT = 0.3; /* ln of levels over the cloth's */
 enum { ROUNDS = 3 };
-static const double SUPPORT_ROUGH = 0.17;	/* less in the first round */
-static const double SUPPORT_CROWDED = 0.75, RING_FREE = 0.35;	/* more of it is wanted where it lies among other foreign things */
+static const double SUPPORT_ROUGH = 0.17; /* less in the first round */
+static const double SUPPORT_CROWDED = 0.75,
+		    RING_FREE = 0.35; /* more of it is wanted where it lies among other foreign things */
 static const double COVER_MIN = 0.55;
 static const double SCALE_MIN = 0.86, SCALE_MAX = 1.085;
-static const double USUAL_SCALE = 0.965, USUAL_SPREAD = 0.02;	/* apparent radius of any ball */
-static const double LIKE_SPREAD = 0.004;	/* the same among balls of one look in one frame */
-static const double LIKE_DISTANCE = 0.45;	/* features nearer than that are of one look */
-static const double OVERLAP_DISTANCE = 0.80;	/* the same for finished fits */
+static const double USUAL_SCALE = 0.965, USUAL_SPREAD = 0.02; /* apparent radius of any ball */
+static const double LIKE_SPREAD = 0.004;		      /* the same among balls of one look in one frame */
+static const double LIKE_DISTANCE = 0.45;		      /* features nearer than that are of one look */
+static const double OVERLAP_DISTANCE = 0.80;		      /* the same for finished fits */
 static const double PACK_DISTANCE = 1.08, PACK_COVER = 0.9, SMALL_RADIUS = 7;
-static const double DOUBLE_DISTANCE = 0.75;	/* of a diameter: nearer than that two fits are of one ball */
+static const double DOUBLE_DISTANCE = 0.75; /* of a diameter: nearer than that two fits are of one ball */
 
-int detector_init(struct detector *d, const struct table *table, const struct colour_classifier *colours, int width, int height)
+int detector_init(struct detector *d, const struct table *table, const struct colour_classifier *colours, int width,
+		  int height)
 {
 	*d = (struct detector){.table = table, .colours = colours};
 	int rc = scan_init(&d->scan, width, height);
@@ -44,7 +46,8 @@ bool detector_place(struct detector *d, const struct camera *camera)
 
 bool detect_possible(const struct table *table, vec2 pos)
 {
-	double hx = table->length / 2 - table->ball_radius + EDGE_SLACK, hy = table->width / 2 - table->ball_radius + EDGE_SLACK;
+	double hx = table->length / 2 - table->ball_radius + EDGE_SLACK,
+	       hy = table->width / 2 - table->ball_radius + EDGE_SLACK;
 	bool inside = fabs(pos.x) <= hx && fabs(pos.y) <= hy;
 	for (int i = 0; i < table->pocket_count; i++) {
 		double far = vec2_dist(pos, table->pocket[i].centre) / table->pocket[i].radius;
@@ -63,7 +66,8 @@ static double cover_at(const struct detector *d, vec2 px, double reach)
 	int r = (int)(reach * SMALL_RADIUS), in = 0, marked = 0;
 	for (int y = (int)mid.y - r; y <= (int)mid.y + r; y++)
 		for (int x = (int)mid.x - r; x <= (int)mid.x + r; x++) {
-			if (x < 0 || y < 0 || x >= s->width || y >= s->height || (x - mid.x) * (x - mid.x) + (y - mid.y) * (y - mid.y) > r * r)
+			if (x < 0 || y < 0 || x >= s->width || y >= s->height ||
+			    (x - mid.x) * (x - mid.x) + (y - mid.y) * (y - mid.y) > r * r)
 				continue;
 			in++;
 			marked += s->mark[y * s->width + x] >= SCAN_FOREIGN / 2;
@@ -275,7 +279,8 @@ static void find_alone(struct detector *d)
 	for (int i = 0; i < d->count; i++) {
 		bool alone = true;
 		for (int j = 0; j < d->count && alone; j++)
-			alone = j == i || vec2_dist(d->candidate[i].fit.pos, d->candidate[j].fit.pos) > 3.2 * d->table->ball_radius;
+			alone = j == i || vec2_dist(d->candidate[i].fit.pos, d->candidate[j].fit.pos) >
+						  3.2 * d->table->ball_radius;
 		d->candidate[i].alone = alone;
 	}
 }
@@ -323,14 +328,15 @@ static void refuse_overlaps(struct detector *d)
 	for (int i = 0; i < d->count; i++)
 		for (int j = 0; j < i; j++) {
 			struct candidate *a = &d->candidate[i], *b = &d->candidate[j];
-			if (a->refusal != REFUSED_NOT || b->refusal != REFUSED_NOT || vec2_dist(a->fit.pos, b->fit.pos) > apart)
+			if (a->refusal != REFUSED_NOT || b->refusal != REFUSED_NOT ||
+			    vec2_dist(a->fit.pos, b->fit.pos) > apart)
 				continue;
 			bool drop_a = a->fixed != b->fixed ? b->fixed : worth(a) < worth(b);
 			(drop_a ? a : b)->refusal = REFUSED_DOUBLE;
 		}
 }
 
-static const double FIXED_FIRMNESS = 1e6;	/* others give way to what has not moved */
+static const double FIXED_FIRMNESS = 1e6; /* others give way to what has not moved */
 
 /* How firmly a fit stands: edges that hold it. */
 static double firmness(const struct candidate *c)
@@ -423,8 +429,8 @@ void detector_keep(struct detector *d, const struct candidate *known, int tag)
 	d->candidate[d->count++].tag = tag;
 }
 
-bool detector_follow(struct detector *d, const struct image *frame, const struct camera *camera, const struct candidate *known,
-		     vec2 pos, int tag)
+bool detector_follow(struct detector *d, const struct image *frame, const struct camera *camera,
+		     const struct candidate *known, vec2 pos, int tag)
 {
 	struct candidate c = *known;
 	struct fit other[DETECT_MAX];

@@ -15,42 +15,43 @@ enum refusal { REFUSED_NOT, REFUSED_PLACE, REFUSED_FIT, REFUSED_DOUBLE, REFUSED_
 struct candidate {
 	struct fit fit;
 	struct colour_feature look;
-	double cover;		/* share of the inside that is not cloth */
-	double ring;		/* share just outside of the rim that is not cloth, neighbours left out */
-	double confidence;	/* 0..1 */
+	double cover;	   /* share of the inside that is not cloth */
+	double ring;	   /* share just outside of the rim that is not cloth, neighbours left out */
+	double confidence; /* 0..1 */
 	enum refusal refusal;
-	bool fixed;		/* known from before and unchanged: neither fitted nor judged again */
-	bool alone;		/* no neighbour near enough to hide any of its rim */
-	int tag;		/* the caller's, -1 for what was found anew */
+	bool fixed; /* known from before and unchanged: neither fitted nor judged again */
+	bool alone; /* no neighbour near enough to hide any of its rim */
+	int tag;    /* the caller's, -1 for what was found anew */
 };
 
 struct detector {
 	const struct table *table;
-	const struct colour_classifier *colours;	/* NULL: none learned yet */
+	const struct colour_classifier *colours; /* NULL: none learned yet */
 	struct scan scan;
 	struct seeds seeds;
 	int count;
-	struct candidate candidate[DETECT_MAX];	/* accepted ones */
+	struct candidate candidate[DETECT_MAX]; /* accepted ones */
 	int refused_count;
 	struct candidate refused[SEED_MAX];
 };
 
 /* Borrows table and colours (NULL is fine). 0 or -ENOMEM. */
-int detector_init(struct detector *d, const struct table *table, const struct colour_classifier *colours, int width, int height);
+int detector_init(struct detector *d, const struct table *table, const struct colour_classifier *colours, int width,
+		  int height);
 void detector_finish(struct detector *d);
 /* Whenever the pose or the frame's size changes. False when the bed is not in view. */
 bool detector_place(struct detector *d, const struct camera *camera);
 /* Balls of a whole frame into d->candidate. False when no cloth is seen. */
 bool detector_frame(struct detector *d, const struct image *frame, const struct camera *camera);
 
-/* The same in steps, for a tracked table whose scan is up to date: begin; put in what is known; look for more in the active
- * cells; settle. Candidates that are known carry the caller's tag. */
+/* The same in steps, for a tracked table whose scan is up to date: begin; put in what is known; look for more in the
+ * active cells; settle. Candidates that are known carry the caller's tag. */
 void detector_begin(struct detector *d);
 /* A ball that did not change. */
 void detector_keep(struct detector *d, const struct candidate *known, int tag);
 /* A ball to be fitted again, near pos; scale and look are taken from known. False when it is not there. */
-bool detector_follow(struct detector *d, const struct image *frame, const struct camera *camera, const struct candidate *known,
-		     vec2 pos, int tag);
+bool detector_follow(struct detector *d, const struct image *frame, const struct camera *camera,
+		     const struct candidate *known, vec2 pos, int tag);
 void detector_search(struct detector *d, const struct image *frame, const struct camera *camera, const uint8_t *active);
 void detector_settle(struct detector *d, const struct image *frame, const struct camera *camera);
 /* Share of small pixels that are not cloth around a full pixel, within 0.8 of a usual ball's radius. */

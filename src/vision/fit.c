@@ -5,29 +5,31 @@
 
 #include "vision/linear.h"
 
-/* How the rim is sampled: samples to either side of it (wide: in the first step), and their distance over the radius. */
+/* How the rim is sampled: samples to either side of it (wide: in the first step), and their distance over the radius.
+ */
 struct sampling {
 	int wide, narrow;
 	double step;
 };
 enum { REACH_MAX = 10 };
 static const struct sampling FINE = {10, 7, 1 / 28.0}, COARSE = {6, 4, 1 / 16.0};
-static const double CONTRAST_MIN = 12;		/* levels; a weaker edge is noise */
+static const double CONTRAST_MIN = 12; /* levels; a weaker edge is noise */
 static const double CONTRAST_FULL = 40;
-/* How far an edge usually lies off, px; edges side by side err alike, so each counts less than its own noise would say. */
+/* How far an edge usually lies off, px; edges side by side err alike, so each counts less than its own noise would say.
+ */
 static const double EDGE_PX = 0.9;
 /* In a crease between balls the own dark limb belongs to the outside: the edge is seen this far inside of the rim. */
 static const double CREASE_PX = -0.5, CREASE_SPREAD_PX = 0.8, CREASE_REACH = 1.5;
 static const float CREASE_CHROMA2 = 0.16f * 0.16f, CREASE_SHADE = 0.33f;
-static const double STEEP_REACH = 0.108;		/* radii around the half way that are searched */
-static const double EDGES_MIN = 0.3;		/* share of open rays with any edge at all */
-static const double EXPLAINED_MIN = 0.3;		/* share of them that one outline explains */
-static const double SUPPORT_PX = 1.1;		/* an edge this near is where it should be */
+static const double STEEP_REACH = 0.108; /* radii around the half way that are searched */
+static const double EDGES_MIN = 0.3;	 /* share of open rays with any edge at all */
+static const double EXPLAINED_MIN = 0.3; /* share of them that one outline explains */
+static const double SUPPORT_PX = 1.1;	 /* an edge this near is where it should be */
 
 struct edge {
 	bool hidden, found;
-	bool crease;		/* between two balls: the outside is no cloth but a neighbour or its dark foot */
-	double offset;		/* px along the normal, outwards */
+	bool crease;   /* between two balls: the outside is no cloth but a neighbour or its dark foot */
+	double offset; /* px along the normal, outwards */
 	double weight;
 	double contrast;
 };
@@ -63,7 +65,8 @@ static bool half_crossing(const float *v, int count, double *at)
 	return best < 1e8;
 }
 
-/* The steepest place near there. Shading makes the levels to either side slope, and with them the half way; the steepest place stays. */
+/* The steepest place near there. Shading makes the levels to either side slope, and with them the half way; the
+ * steepest place stays. */
 static double steepest(const float *v, int count, double half, double reach)
 {
 	double sum = 0, moment = 0, middle = (count - 1) / 2.0;
@@ -86,9 +89,9 @@ static bool is_foreign(const float p[3], const float c[3])
 }
 
 struct ray {
-	vec2 p, n;		/* px; unit, outwards */
-	int reach;		/* samples to either side */
-	double step;		/* px between them */
+	vec2 p, n;   /* px; unit, outwards */
+	int reach;   /* samples to either side */
+	double step; /* px between them */
 };
 
 /* Colours along the ray, inside first, projected onto the way from the outside's colour to the inside's. */
@@ -120,7 +123,9 @@ static bool profile(const struct image *im, const struct ray *ray, const float c
 	if (edge->contrast < CONTRAST_MIN)
 		return false;
 	for (int j = 0; j < count; j++)
-		v[j] = ((colour[j][0] - out[0]) * d[0] + (colour[j][1] - out[1]) * d[1] + (colour[j][2] - out[2]) * d[2]) / dd;
+		v[j] = ((colour[j][0] - out[0]) * d[0] + (colour[j][1] - out[1]) * d[1] +
+			(colour[j][2] - out[2]) * d[2]) /
+		       dd;
 	return true;
 }
 
@@ -137,7 +142,8 @@ static double nearest_neighbour(const struct fit_view *view, const struct fit *s
 	return nearest;
 }
 
-static void find_edges(const struct fit_view *view, struct fit *fit, int reach, double step_share, struct edge edge[OUTLINE_POINTS])
+static void find_edges(const struct fit_view *view, struct fit *fit, int reach, double step_share,
+		       struct edge edge[OUTLINE_POINTS])
 {
 	double step = fit->outline.radius_px * step_share;
 	for (int i = 0; i < OUTLINE_POINTS; i++) {
@@ -218,12 +224,13 @@ static void judge(struct fit *fit, const struct edge edge[OUTLINE_POINTS], doubl
 }
 
 /* Share of the open rays whose edges the solution explains. */
-static double edges_explained(const struct fit *fit, const struct edge edge[OUTLINE_POINTS], double cut, const double x[UNKNOWNS])
+static double edges_explained(const struct fit *fit, const struct edge edge[OUTLINE_POINTS], double cut,
+			      const double x[UNKNOWNS])
 {
 	int good = 0, open = 0;
 	for (int i = 0; i < OUTLINE_POINTS; i++) {
-		double off = edge[i].offset - fit->outline.normal[i].x * x[SHIFT_X] - fit->outline.normal[i].y * x[SHIFT_Y] -
-			     x[GROWTH] - (edge[i].crease ? x[CREASE] : 0);
+		double off = edge[i].offset - fit->outline.normal[i].x * x[SHIFT_X] -
+			     fit->outline.normal[i].y * x[SHIFT_Y] - x[GROWTH] - (edge[i].crease ? x[CREASE] : 0);
 		good += edge[i].found && fabs(off) < cut;
 		open += !edge[i].hidden;
 	}

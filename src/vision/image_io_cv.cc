@@ -11,11 +11,12 @@
 
 #include "vision/reason.h"
 
-namespace {
+namespace
+{
 
 struct header_size {
 	long width, height;
-	bool found, complete;	/* complete: the end marker is there */
+	bool found, complete; /* complete: the end marker is there */
 };
 
 unsigned be16(const uint8_t *p)
@@ -105,7 +106,8 @@ int decode(const uint8_t *data, size_t size, image_buffer *out, char *err, size_
 	if (mat.empty())
 		return vision_fail(-EBADMSG, err, err_size, "not a readable image");
 	if (mat.cols > IMAGE_SIDE_MAX || mat.rows > IMAGE_SIDE_MAX)
-		return vision_fail(-EFBIG, err, err_size, "%d x %d pixels, at most %d a side", mat.cols, mat.rows, IMAGE_SIDE_MAX);
+		return vision_fail(-EFBIG, err, err_size, "%d x %d pixels, at most %d a side", mat.cols, mat.rows,
+				   IMAGE_SIDE_MAX);
 	return keep(mat, out, err, err_size);
 }
 
@@ -164,7 +166,8 @@ try {
 	if (!s.found || s.width <= 0 || s.height <= 0)
 		return vision_fail(-EBADMSG, err, err_size, "the image has no valid header");
 	if (s.width > IMAGE_SIDE_MAX || s.height > IMAGE_SIDE_MAX)
-		return vision_fail(-EFBIG, err, err_size, "%ld x %ld pixels, at most %d a side", s.width, s.height, IMAGE_SIDE_MAX);
+		return vision_fail(-EFBIG, err, err_size, "%ld x %ld pixels, at most %d a side", s.width, s.height,
+				   IMAGE_SIDE_MAX);
 	if (!s.complete)
 		return vision_fail(-EBADMSG, err, err_size, "the image is truncated");
 	return decode(data, size, out, err, err_size);

@@ -8,12 +8,12 @@
 extern "C" {
 #endif
 
-enum { IMAGE_SIDE_MAX = 8192 };	/* px; larger images are refused before they are decoded */
+enum { IMAGE_SIDE_MAX = 8192 }; /* px; larger images are refused before they are decoded */
 
 /* Pixels that grow when needed and are then reused. Begins as {0}; finish frees. */
 struct image_buffer {
-	struct image image;	/* valid after a successful call */
-	size_t capacity;	/* bytes owned */
+	struct image image; /* valid after a successful call */
+	size_t capacity;    /* bytes owned */
 };
 
 /* Bytes that grow when needed. Begins as {0}; finish frees. */
@@ -24,10 +24,11 @@ struct byte_buffer {
 
 /* Makes room for width x height pixels; the pixels are not set. 0, -EINVAL (size), -ENOMEM. */
 int image_buffer_reserve(struct image_buffer *buffer, int width, int height);
-void image_buffer_finish(struct image_buffer *buffer);	/* {0} is fine */
+void image_buffer_finish(struct image_buffer *buffer); /* {0} is fine */
 void byte_buffer_finish(struct byte_buffer *buffer);
 
-/* All of these: 0, or a negative errno with the reason in err and out untouched. Grey and 16-bit images become 8-bit BGR. */
+/* All of these: 0, or a negative errno with the reason in err and out untouched. Grey and 16-bit images become 8-bit
+ * BGR. */
 
 /* PNG, JPEG or BMP file. -ENOENT, -EBADMSG (no image, truncated), -EFBIG. */
 int image_read(const char *path, struct image_buffer *out, char *err, size_t err_size);

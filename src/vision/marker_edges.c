@@ -6,14 +6,14 @@
 #include "physics/vec2.h"
 
 enum { EDGE_SAMPLES = 24, EDGE_SAMPLES_MIN = 14, PROFILE = 17, ROUNDS = 3, BALANCE = 10 };
-static const double BALANCE_STEP = 0.25;	/* px */
-static const double ENDS = 0.12;		/* of a side, next to the corners, is not measured */
-static const double CONTRAST_MIN = 25;		/* levels between border and paper */
-static const double CORNER_MOVE_MAX = 6;	/* px; further off something else was measured */
+static const double BALANCE_STEP = 0.25; /* px */
+static const double ENDS = 0.12;	 /* of a side, next to the corners, is not measured */
+static const double CONTRAST_MIN = 25;	 /* levels between border and paper */
+static const double CORNER_MOVE_MAX = 6; /* px; further off something else was measured */
 static const double OUTLIER_PX = 0.5;
 
 struct line {
-	vec2 point, normal;	/* px; unit */
+	vec2 point, normal; /* px; unit */
 };
 
 static double grey_at(const struct image *im, vec2 p)
@@ -32,8 +32,8 @@ static bool is_inside(const struct image *im, vec2 p)
 	return p.x >= 1 && p.y >= 1 && p.x < im->width - 2 && p.y < im->height - 2;
 }
 
-/* The place with as much grey missing on its white side as there is too much on its black side: right for every even blur, where the
- * half way is off by up to a tenth of a pixel for a sharp edge between pixels. */
+/* The place with as much grey missing on its white side as there is too much on its black side: right for every even
+ * blur, where the half way is off by up to a tenth of a pixel for a sharp edge between pixels. */
 static double balanced(const struct image *im, vec2 p, vec2 out, double half, double low, double high)
 {
 	double sum = 0;
@@ -127,7 +127,8 @@ static bool intersect(const struct line *a, const struct line *b, vec2 *out)
 static bool refine_once(const struct image *frame, int cells, vec2 corner[4])
 {
 	struct line side[4];
-	vec2 fresh[4], middle = vec2_scale(vec2_add(vec2_add(corner[0], corner[1]), vec2_add(corner[2], corner[3])), 0.25);
+	vec2 fresh[4],
+		middle = vec2_scale(vec2_add(vec2_add(corner[0], corner[1]), vec2_add(corner[2], corner[3])), 0.25);
 	for (int k = 0; k < 4; k++) {
 		vec2 a = corner[k], b = corner[(k + 1) % 4], along = vec2_sub(b, a);
 		vec2 out = vec2_unit(vec2_perp(along));
@@ -139,7 +140,8 @@ static bool refine_once(const struct image *frame, int cells, vec2 corner[4])
 			return false;
 	}
 	for (int k = 0; k < 4; k++)
-		if (!intersect(&side[(k + 3) % 4], &side[k], &fresh[k]) || vec2_dist(fresh[k], corner[k]) > CORNER_MOVE_MAX)
+		if (!intersect(&side[(k + 3) % 4], &side[k], &fresh[k]) ||
+		    vec2_dist(fresh[k], corner[k]) > CORNER_MOVE_MAX)
 			return false;
 	for (int k = 0; k < 4; k++)
 		corner[k] = fresh[k];

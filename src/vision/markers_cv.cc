@@ -18,7 +18,8 @@ struct marker_finder {
 	std::vector<std::vector<cv::Point2f>> corners;
 };
 
-namespace {
+namespace
+{
 
 /* Around a marker seen before: this many of its own sides. */
 const double NEAR_MARGIN = 0.6;
@@ -72,14 +73,16 @@ cv::Mat view_of(const image *frame)
 
 } // namespace
 
-int marker_finder_create(struct marker_finder **out, int dictionary_count, int dictionary_bits, char *err, size_t err_size)
+int marker_finder_create(struct marker_finder **out, int dictionary_count, int dictionary_bits, char *err,
+			 size_t err_size)
 {
 	*out = nullptr;
 	marker_finder *f = nullptr;
 	/* OpenCV searches for ever where there are fewer different markers than wanted. */
 	if (dictionary_bits < 3 || dictionary_bits > 7 || dictionary_count < 1 || dictionary_count > 50)
-		return vision_fail(-EINVAL, err, err_size, "dictionary of %d markers of %d bits, allowed 1..50 and 3..7",
-				   dictionary_count, dictionary_bits);
+		return vision_fail(-EINVAL, err, err_size,
+				   "dictionary of %d markers of %d bits, allowed 1..50 and 3..7", dictionary_count,
+				   dictionary_bits);
 	try {
 		f = new marker_finder;
 		f->dictionary = cv::aruco::generateCustomDictionary(dictionary_count, dictionary_bits);
@@ -114,8 +117,8 @@ int marker_find(struct marker_finder *finder, const struct image *frame, struct 
 	return found.count;
 }
 
-int marker_find_near(struct marker_finder *finder, const struct image *frame, const struct marker_view *seen, int seen_count,
-		     struct marker_view *out, int max)
+int marker_find_near(struct marker_finder *finder, const struct image *frame, const struct marker_view *seen,
+		     int seen_count, struct marker_view *out, int max)
 {
 	sorted found = {out, 0, max};
 	try {

@@ -15,15 +15,17 @@ struct marker_view {
 };
 
 struct marker_finder;
-/* For the markers of cv::aruco::generateCustomDictionary(count, bits). 0, -EINVAL or -ENOMEM with the reason. Caller destroys. */
-int marker_finder_create(struct marker_finder **out, int dictionary_count, int dictionary_bits, char *err, size_t err_size);
-void marker_finder_destroy(struct marker_finder *finder);	/* NULL is fine */
+/* For the markers of cv::aruco::generateCustomDictionary(count, bits). 0, -EINVAL or -ENOMEM with the reason. Caller
+ * destroys. */
+int marker_finder_create(struct marker_finder **out, int dictionary_count, int dictionary_bits, char *err,
+			 size_t err_size);
+void marker_finder_destroy(struct marker_finder *finder); /* NULL is fine */
 
 /* Markers in the whole frame, each id once, in order of id. Returns how many, at most max. */
 int marker_find(struct marker_finder *finder, const struct image *frame, struct marker_view *out, int max);
 /* The same, looking only around where markers were seen before: far cheaper. */
-int marker_find_near(struct marker_finder *finder, const struct image *frame, const struct marker_view *seen, int seen_count,
-		     struct marker_view *out, int max);
+int marker_find_near(struct marker_finder *finder, const struct image *frame, const struct marker_view *seen,
+		     int seen_count, struct marker_view *out, int max);
 
 #ifdef __cplusplus
 }

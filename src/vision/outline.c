@@ -3,7 +3,7 @@
 #include <math.h>
 
 /* cos and sin of the points' angles. */
-static const double HALF = 0.13089969389957473 / 2;	/* 2 pi / 48 / 2 */
+static const double HALF = 0.13089969389957473 / 2; /* 2 pi / 48 / 2 */
 
 static void cross(const double a[3], const double b[3], double out[3])
 {
@@ -43,7 +43,8 @@ static void normals(struct outline *o)
 		middle = vec2_madd(middle, 1.0 / OUTLINE_POINTS, o->point[i]);
 	o->radius_px = 0;
 	for (int i = 0; i < OUTLINE_POINTS; i++) {
-		vec2 before = o->point[(i + OUTLINE_POINTS - 1) % OUTLINE_POINTS], after = o->point[(i + 1) % OUTLINE_POINTS];
+		vec2 before = o->point[(i + OUTLINE_POINTS - 1) % OUTLINE_POINTS],
+		     after = o->point[(i + 1) % OUTLINE_POINTS];
 		vec2 normal = vec2_unit(vec2_perp(vec2_sub(after, before)));
 		vec2 out = vec2_sub(o->point[i], middle);
 		o->normal[i] = vec2_dot(normal, out) < 0 ? vec2_scale(normal, -1) : normal;

@@ -7,8 +7,8 @@
 #include "vision/linear.h"
 
 enum { SIDE = 6, FIRST_YAW = 7, UNKNOWN_MAX = FIRST_YAW + MARKER_MAX, STEP_MAX = 60 };
-static const double STEP_ROTATION = 1e-6, STEP_LENGTH = 1e-6;	/* of the numeric derivatives: rad, m */
-static const double WORST_RESIDUAL_PX = 8;			/* at 1280 px; more is no table */
+static const double STEP_ROTATION = 1e-6, STEP_LENGTH = 1e-6; /* of the numeric derivatives: rad, m */
+static const double WORST_RESIDUAL_PX = 8;		      /* at 1280 px; more is no table */
 
 /* One marker: where it lies, how it is turned, what was seen of it. */
 struct placed {
@@ -87,8 +87,8 @@ static void rotate(double r[9], const double w[3])
 			r[3 * i + j] = e[3 * i] * old[j] + e[3 * i + 1] * old[3 + j] + e[3 * i + 2] * old[6 + j];
 }
 
-/* Unknowns: rotation vector, translation, half side, yaw of each marker. A white border that blooms makes the black square
- * look smaller than it is, by up to 5 %: the side as seen is none of the pose's business. */
+/* Unknowns: rotation vector, translation, half side, yaw of each marker. A white border that blooms makes the black
+ * square look smaller than it is, by up to 5 %: the side as seen is none of the pose's business. */
 static void move(struct problem *p, const double *step)
 {
 	rotate(p->camera.pose.r, step);
@@ -166,7 +166,8 @@ static bool affine(const struct problem *p, double m[6])
 		for (int i = 0; i < p->count; i++) {
 			vec2 c = p->marker[i].centre, s = seen_centre(&p->marker[i]);
 			double row[3] = {c.x, c.y, 1};
-			double v = axis ? (s.y - p->camera.in.cy) / p->camera.in.fy : (s.x - p->camera.in.cx) / p->camera.in.fx;
+			double v = axis ? (s.y - p->camera.in.cy) / p->camera.in.fy
+					: (s.x - p->camera.in.cx) / p->camera.in.fx;
 			for (int j = 0; j < 3; j++) {
 				b[j] += row[j] * v;
 				for (int k = 0; k < 3; k++)
@@ -201,7 +202,8 @@ static bool start(struct problem *p)
 	p->camera.pose.t[2] = depth + p->height;
 	for (int i = 0; i < p->count; i++) {
 		struct placed *k = &p->marker[i];
-		vec2 along = vec2_add(vec2_sub(seen_corner(k, 1), seen_corner(k, 0)), vec2_sub(seen_corner(k, 2), seen_corner(k, 3)));
+		vec2 along = vec2_add(vec2_sub(seen_corner(k, 1), seen_corner(k, 0)),
+				      vec2_sub(seen_corner(k, 2), seen_corner(k, 3)));
 		k->yaw = atan2(s * along.x - c * along.y, c * along.x + s * along.y);
 	}
 	return true;
@@ -220,8 +222,8 @@ static double plane_residual(const struct problem *p)
 	return sqrt(sum / (4 * p->count));
 }
 
-bool pose_from_markers(const struct marker_layout *layout, const struct marker_view *view, int count, struct camera *camera,
-		       struct pose_fit *fit)
+bool pose_from_markers(const struct marker_layout *layout, const struct marker_view *view, int count,
+		       struct camera *camera, struct pose_fit *fit)
 {
 	struct problem p = {.camera = *camera};
 	if (!gather(layout, view, count, &p) || !start(&p))

@@ -6,12 +6,12 @@
 #include <stdlib.h>
 #include <string.h>
 
-static const double SMALL_RADIUS_PX = 7.75;	/* what a ball's radius should be in the small picture */
-static const double BED_MARGIN = 0.012;		/* m beyond the noses that still belong to the bed */
-static const float CLOTH_CHROMA = 0.11f;	/* off the cloth's direction, relative to its length: still cloth */
+static const double SMALL_RADIUS_PX = 7.75; /* what a ball's radius should be in the small picture */
+static const double BED_MARGIN = 0.012;	    /* m beyond the noses that still belong to the bed */
+static const float CLOTH_CHROMA = 0.11f;    /* off the cloth's direction, relative to its length: still cloth */
 static const float CLOTH_SHADE_MIN = 0.5f, CLOTH_SHADE_MAX = 1.4f;
-enum { CELL_STEP = 2 };				/* of a cell, every second pixel of every second row tells enough */
-static const float CELL_MIN_SHARE = 0.15f;	/* of a cell's pixels that must be cloth before it is believed */
+enum { CELL_STEP = 2 };			   /* of a cell, every second pixel of every second row tells enough */
+static const float CELL_MIN_SHARE = 0.15f; /* of a cell's pixels that must be cloth before it is believed */
 
 int scan_init(struct scan *scan, int width, int height)
 {
@@ -27,8 +27,8 @@ int scan_init(struct scan *scan, int width, int height)
 	scan->changed = calloc(2 * cells, sizeof(*scan->changed));
 	scan->difference = calloc(cells, sizeof(*scan->difference));
 	scan->foreign = calloc(cells, sizeof(*scan->foreign));
-	if (scan->bgr && scan->mark && scan->row_from && scan->row_to && scan->cell && scan->cell_weight && scan->reference &&
-	    scan->changed && scan->difference && scan->foreign)
+	if (scan->bgr && scan->mark && scan->row_from && scan->row_to && scan->cell && scan->cell_weight &&
+	    scan->reference && scan->changed && scan->difference && scan->foreign)
 		return 0;
 	scan_finish(scan);
 	return -ENOMEM;
@@ -61,9 +61,10 @@ vec2 scan_from_full(const struct scan *scan, vec2 px)
 	return (vec2){(px.x - scan->x0 - half) / scan->factor, (px.y - scan->y0 - half) / scan->factor};
 }
 
-/* ---- place ----------------------------------------------------------------------------------------------------------- */
+/* ---- place
+ * ----------------------------------------------------------------------------------------------------------- */
 
-enum { BORDER_POINTS = 64 };	/* along the bed's border: a lens bends its edges */
+enum { BORDER_POINTS = 64 }; /* along the bed's border: a lens bends its edges */
 
 static vec2 border_point(const struct table *table, int i)
 {
@@ -157,7 +158,8 @@ bool scan_place(struct scan *scan, const struct camera *camera, const struct tab
 	return true;
 }
 
-/* ---- copy ------------------------------------------------------------------------------------------------------------ */
+/* ---- copy
+ * ------------------------------------------------------------------------------------------------------------ */
 
 enum { STRIP = 64 };
 
@@ -191,7 +193,8 @@ static void shrink_any(const uint8_t *in, ptrdiff_t stride, int factor, uint8_t 
 static void copy_small(struct scan *scan, const struct image *frame, int x0, int y0, int x1, int y1)
 {
 	for (int y = y0; y < y1; y++) {
-		const uint8_t *in = frame->data + (scan->y0 + y * scan->factor) * frame->stride + 3 * (scan->x0 + x0 * scan->factor);
+		const uint8_t *in = frame->data + (scan->y0 + y * scan->factor) * frame->stride +
+				    3 * (scan->x0 + x0 * scan->factor);
 		uint8_t *out = scan->bgr + 3 * (y * scan->width + x0);
 		if (scan->factor == 2)
 			shrink_two(in, in + frame->stride, out, x1 - x0);
@@ -200,7 +203,8 @@ static void copy_small(struct scan *scan, const struct image *frame, int x0, int
 	}
 }
 
-/* ---- cloth ----------------------------------------------------------------------------------------------------------- */
+/* ---- cloth
+ * ----------------------------------------------------------------------------------------------------------- */
 
 /* The fullest bin of a coarse histogram: the cloth is most of what is seen. */
 static bool cloth_mode(const struct scan *scan, float mode[3])
@@ -359,7 +363,8 @@ static void learn_cells(struct scan *scan)
 	fill_cells(scan);
 }
 
-/* ---- marks ----------------------------------------------------------------------------------------------------------- */
+/* ---- marks
+ * ----------------------------------------------------------------------------------------------------------- */
 
 /* Cell coordinate and share of a small pixel: cells hold the colour of their middles. */
 static inline int cell_of(float at, int cells, float *share)
@@ -391,13 +396,14 @@ void scan_cloth_at(const struct scan *scan, vec2 px, float out[3])
 	cell_at(scan, (float)small.x, (float)small.y, out);
 }
 
-/* How far from cloth a pixel is, in three steps. Off the cloth's direction counts whatever the brightness; dark only where no shadow
- * reaches; bright (a white ball has little colour of its own) only beyond the projector's light. */
-static const float OFF_SURE = 0.16f * 0.16f, OFF_HALF = 0.113f * 0.113f;	/* squared, of the pixel's own length */
-static const float OFF_FLOOR = 0.04f;	/* of the cloth's length, squared: noise of dark pixels */
-static const float DARK_SURE = 0.28f * 0.28f, DARK_HALF = 0.334f * 0.334f, LIGHT_SURE = 1.6f * 1.6f, LIGHT_HALF = 1.458f * 1.458f;
+/* How far from cloth a pixel is, in three steps. Off the cloth's direction counts whatever the brightness; dark only
+ * where no shadow reaches; bright (a white ball has little colour of its own) only beyond the projector's light. */
+static const float OFF_SURE = 0.16f * 0.16f, OFF_HALF = 0.113f * 0.113f; /* squared, of the pixel's own length */
+static const float OFF_FLOOR = 0.04f; /* of the cloth's length, squared: noise of dark pixels */
+static const float DARK_SURE = 0.28f * 0.28f, DARK_HALF = 0.334f * 0.334f, LIGHT_SURE = 1.6f * 1.6f,
+		   LIGHT_HALF = 1.458f * 1.458f;
 
-enum { RUN = 8 };	/* pixels that share a cloth colour */
+enum { RUN = 8 }; /* pixels that share a cloth colour */
 
 /* Straight loops over arrays: the compiler makes vectors of them. */
 static void mark_run(const uint8_t *restrict p, const float cloth[3], uint8_t *restrict mark)
@@ -498,9 +504,10 @@ bool scan_frame(struct scan *scan, const struct image *frame)
 	return true;
 }
 
-/* ---- changes --------------------------------------------------------------------------------------------------------- */
+/* ---- changes
+ * --------------------------------------------------------------------------------------------------------- */
 
-static const double CHANGE_FACTOR = 1.8, CHANGE_FLOOR = 12;	/* against the usual difference; 1/16 level */
+static const double CHANGE_FACTOR = 1.8, CHANGE_FLOOR = 12; /* against the usual difference; 1/16 level */
 
 static int row_difference(const uint8_t *restrict a, const uint8_t *restrict b, int count)
 {

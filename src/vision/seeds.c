@@ -8,10 +8,10 @@
 #include "vision/outline.h"
 
 enum { KNOTS_X = 9, KNOTS_Y = 5 };
-static const int EDGE_MIN2 = 14 * 14;		/* squared difference over two small pixels, levels */
-static const double VOTE_SHARE = 0.20;		/* of the outline's length that must have voted */
-static const double COVER_MIN = 0.5;		/* of the inside that must not be cloth */
-static const double APART = 0.8;		/* seeds closer than this many radii are one */
+static const int EDGE_MIN2 = 14 * 14;  /* squared difference over two small pixels, levels */
+static const double VOTE_SHARE = 0.20; /* of the outline's length that must have voted */
+static const double COVER_MIN = 0.5;   /* of the inside that must not be cloth */
+static const double APART = 0.8;       /* seeds closer than this many radii are one */
 
 int seeds_init(struct seeds *seeds, int width, int height)
 {
@@ -35,8 +35,8 @@ void seeds_finish(struct seeds *seeds)
 }
 
 /* Second moments of the outline's points: for an ellipse they are half its matrix. */
-static bool shape_at(const struct scan *scan, const struct camera *camera, const struct table *table, double x, double y,
-		     struct seed_shape *out)
+static bool shape_at(const struct scan *scan, const struct camera *camera, const struct table *table, double x,
+		     double y, struct seed_shape *out)
 {
 	vec2 pos;
 	struct outline o;
@@ -143,7 +143,8 @@ static void smooth_row(struct seeds *seeds, const struct scan *scan, int y, int 
 	const uint16_t *a = seeds->vote + (y - 1) * width, *b = a + width, *c = b + width;
 	uint16_t *out = seeds->sum + y * width;
 	for (int x = x0; x < x1; x++)
-		out[x] = (uint16_t)(a[x - 1] + a[x] + a[x + 1] + b[x - 1] + b[x] + b[x + 1] + c[x - 1] + c[x] + c[x + 1]);
+		out[x] = (uint16_t)(a[x - 1] + a[x] + a[x + 1] + b[x - 1] + b[x] + b[x + 1] + c[x - 1] + c[x] +
+				    c[x + 1]);
 }
 
 /* Share of marked pixels within 0.75 of the ellipse. */

@@ -7,9 +7,9 @@
 enum { SEED_MAX = 160 };
 
 struct seed {
-	vec2 px;	/* full pixel of the outline's middle */
+	vec2 px; /* full pixel of the outline's middle */
 	int votes;
-	double cover;	/* share of its inside that is not cloth, 0..1 */
+	double cover; /* share of its inside that is not cloth, 0..1 */
 };
 
 /* Ellipse that a ball's outline is at one place, as a symmetric matrix in small pixels squared. */
@@ -18,14 +18,14 @@ struct seed_shape {
 };
 
 struct seeds {
-	uint16_t *vote, *sum;		/* as large as the small picture */
-	struct seed_shape *shape;	/* one a cell of the scan */
+	uint16_t *vote, *sum;	  /* as large as the small picture */
+	struct seed_shape *shape; /* one a cell of the scan */
 	int capacity;
 	int count;
-	struct seed seed[SEED_MAX];	/* most votes first */
+	struct seed seed[SEED_MAX]; /* most votes first */
 };
 
-int seeds_init(struct seeds *seeds, int width, int height);	/* 0 or -ENOMEM */
+int seeds_init(struct seeds *seeds, int width, int height); /* 0 or -ENOMEM */
 void seeds_finish(struct seeds *seeds);
 /* Shapes for the scan's present place. */
 bool seeds_place(struct seeds *seeds, const struct scan *scan, const struct camera *camera, const struct table *table);

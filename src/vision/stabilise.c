@@ -1,11 +1,12 @@
 #include "vision/stabilise.h"
 
 enum { MEAN_MAX = 100, REST_FRAMES = 3 };
-static const double REST_GATE = 3, JUMP_GATE = 8;	/* times the noise */
+static const double REST_GATE = 3, JUMP_GATE = 8; /* times the noise */
 
 struct stabiliser stabilise_begin(vec2 raw, double time)
 {
-	return (struct stabiliser){.pos = raw, .mean = raw, .mean_count = 1, .raw = {raw}, .time = {time}, .raw_count = 1};
+	return (struct stabiliser){
+		.pos = raw, .mean = raw, .mean_count = 1, .raw = {raw}, .time = {time}, .raw_count = 1};
 }
 
 static void remember(struct stabiliser *s, vec2 raw, double time)

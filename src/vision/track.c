@@ -4,16 +4,16 @@
 #include <string.h>
 
 enum {
-	CONFIRM_FRAMES = 3,	/* a new ball is reported when it has been seen this often */
-	LOST_FRAMES = 4,	/* a ball gone from a free place is kept this long */
-	COVERED_FRAMES = 150,	/* one that something covers */
-	TURN = 8,		/* of resting balls, every TURN-th is fitted again in each frame */
+	CONFIRM_FRAMES = 3,   /* a new ball is reported when it has been seen this often */
+	LOST_FRAMES = 4,      /* a ball gone from a free place is kept this long */
+	COVERED_FRAMES = 150, /* one that something covers */
+	TURN = 8,	      /* of resting balls, every TURN-th is fitted again in each frame */
 	LOOKS_MAX = 40
 };
-static const double NOISE_PX = 0.12;		/* a resting ball trembles by, at 15.5 px radius */
-static const double FASTEST = 9;		/* m/s; no ball is faster */
-static const double CONFIRM_SUPPORT = 0.78, CONFIRM_BEND = 0.3;	/* radii */
-static const double LOOK_DISTANCE = 1.2;	/* features further apart are another ball's */
+static const double NOISE_PX = 0.12;				/* a resting ball trembles by, at 15.5 px radius */
+static const double FASTEST = 9;				/* m/s; no ball is faster */
+static const double CONFIRM_SUPPORT = 0.78, CONFIRM_BEND = 0.3; /* radii */
+static const double LOOK_DISTANCE = 1.2;			/* features further apart are another ball's */
 static const double COVERED_SHARE = 0.35;
 
 void tracker_init(struct tracker *t, struct detector *detector)
@@ -34,7 +34,8 @@ static double unlike(const struct colour_feature *a, const struct colour_feature
 	return sqrt(sum);
 }
 
-/* ---- one track ------------------------------------------------------------------------------------------------------- */
+/* ---- one track
+ * ------------------------------------------------------------------------------------------------------- */
 
 static void learn_look(struct track *k, const struct colour_feature *look)
 {
@@ -50,7 +51,8 @@ static bool moves_like_a_ball(const struct tracker *t, const struct track *k)
 	if (k->steady.raw_count < 3)
 		return false;
 	vec2 bend = vec2_add(vec2_madd(raw[0], -2, raw[1]), raw[2]);
-	return k->seen.fit.support > CONFIRM_SUPPORT && vec2_norm(bend) < CONFIRM_BEND * t->detector->table->ball_radius;
+	return k->seen.fit.support > CONFIRM_SUPPORT &&
+	       vec2_norm(bend) < CONFIRM_BEND * t->detector->table->ball_radius;
 }
 
 static void update(struct tracker *t, struct track *k, const struct candidate *c)
@@ -74,7 +76,11 @@ static void start(struct tracker *t, const struct candidate *c, bool confirmed)
 		struct track *k = &t->track[i];
 		if (k->id != 0)
 			continue;
-		*k = (struct track){.id = t->next_id++, .age = 1, .seen_time = t->time, .confirmed = confirmed, .seen = *c,
+		*k = (struct track){.id = t->next_id++,
+				    .age = 1,
+				    .seen_time = t->time,
+				    .confirmed = confirmed,
+				    .seen = *c,
 				    .steady = stabilise_begin(c->fit.pos, t->time)};
 		learn_look(k, &c->look);
 		return;
@@ -90,7 +96,8 @@ static void miss(struct tracker *t, struct track *k)
 		*k = (struct track){0};
 }
 
-/* ---- matching -------------------------------------------------------------------------------------------------------- */
+/* ---- matching
+ * -------------------------------------------------------------------------------------------------------- */
 
 static vec2 predicted(const struct track *k, double time)
 {
@@ -152,7 +159,8 @@ static void take_over(struct tracker *t, bool confirmed)
 			start(t, &d->candidate[j], confirmed);
 }
 
-/* ---- frames ---------------------------------------------------------------------------------------------------------- */
+/* ---- frames
+ * ---------------------------------------------------------------------------------------------------------- */
 
 void tracker_restart(struct tracker *t, double time)
 {
@@ -189,8 +197,7 @@ static bool needs_fit(const struct tracker *t, const struct track *k)
 static bool follow(struct tracker *t, const struct image *frame, const struct camera *camera, int i)
 {
 	const struct track *k = &t->track[i];
-	if (k->steady.moving &&
-	    detector_follow(t->detector, frame, camera, &k->seen, predicted(k, t->time), i))
+	if (k->steady.moving && detector_follow(t->detector, frame, camera, &k->seen, predicted(k, t->time), i))
 		return true;
 	return detector_follow(t->detector, frame, camera, &k->seen, k->steady.pos, i);
 }

@@ -12,9 +12,9 @@
 #include "vision/reason.h"
 #include "vision/track.h"
 
-static const double OCCLUDED_CELLS = 2.5;	/* cells full of something that is no ball: more than a stain */
-static const double OCCLUDED_SHARE = 0.2;	/* of a cell; less is lines and the edge of the bed */
-static const double BUMP_SHARE = 0.5;		/* of all cells changed at once: the camera may have been bumped */
+static const double OCCLUDED_CELLS = 2.5; /* cells full of something that is no ball: more than a stain */
+static const double OCCLUDED_SHARE = 0.2; /* of a cell; less is lines and the edge of the bed */
+static const double BUMP_SHARE = 0.5;	  /* of all cells changed at once: the camera may have been bumped */
 
 struct vision {
 	struct vision_def def;
@@ -23,8 +23,8 @@ struct vision {
 	struct calibration single, stream;
 	struct detector detector;
 	struct tracker tracker;
-	bool tracking;			/* the detector's scan is that of the stream's last frame */
-	int width, height;		/* px of the stream */
+	bool tracking;	   /* the detector's scan is that of the stream's last frame */
+	int width, height; /* px of the stream */
 	double time;
 	int relearn_row;
 };
@@ -34,7 +34,8 @@ struct vision_def vision_def_default(void)
 	return (struct vision_def){.marker_interval = 1, .pose_keep = 10};
 }
 
-/* ---- life ------------------------------------------------------------------------------------------------------------ */
+/* ---- life
+ * ------------------------------------------------------------------------------------------------------------ */
 
 static int check_def(const struct vision_def *def, char *err, size_t err_size)
 {
@@ -42,7 +43,8 @@ static int check_def(const struct vision_def *def, char *err, size_t err_size)
 	if (!def->table)
 		return vision_fail(-EINVAL, err, err_size, "no table");
 	if (in->width < 64 || in->height < 64 || in->width > 8192 || in->height > 8192)
-		return vision_fail(-EINVAL, err, err_size, "camera of %d x %d px, allowed 64..8192", in->width, in->height);
+		return vision_fail(-EINVAL, err, err_size, "camera of %d x %d px, allowed 64..8192", in->width,
+				   in->height);
 	if (!(in->fx > 0) || !(in->fy > 0) || !isfinite(in->cx) || !isfinite(in->cy))
 		return vision_fail(-EINVAL, err, err_size, "camera: fx and fy must be > 0, cx and cy finite");
 	if (def->markers.count < 3 || def->markers.count > MARKER_MAX)
@@ -121,8 +123,9 @@ void vision_samples(const struct vision *vision, struct colour_sample *out)
 int vision_refusals(const struct vision *vision, struct vision_refusal *out, int capacity)
 {
 	static const char *const reason[] = {
-		[REFUSED_NOT] = "accepted",  [REFUSED_PLACE] = "no place for a ball", [REFUSED_FIT] = "no rim found",
-		[REFUSED_DOUBLE] = "two in one", [REFUSED_RIM] = "too little rim",	   [REFUSED_INSIDE] = "inside like cloth",
+		[REFUSED_NOT] = "accepted",	  [REFUSED_PLACE] = "no place for a ball",
+		[REFUSED_FIT] = "no rim found",	  [REFUSED_DOUBLE] = "two in one",
+		[REFUSED_RIM] = "too little rim", [REFUSED_INSIDE] = "inside like cloth",
 		[REFUSED_SIZE] = "wrong size",
 	};
 	const struct detector *d = &vision->detector;
@@ -133,7 +136,8 @@ int vision_refusals(const struct vision *vision, struct vision_refusal *out, int
 	return d->refused_count;
 }
 
-/* ---- results --------------------------------------------------------------------------------------------------------- */
+/* ---- results
+ * --------------------------------------------------------------------------------------------------------- */
 
 static void report_calibration(const struct calibration *c, struct vision_result *out)
 {
@@ -158,8 +162,11 @@ static void assign_colours(const struct vision *v, const struct colour_feature *
 
 static struct vision_ball ball_of(const struct candidate *c)
 {
-	return (struct vision_ball){.pos = c->fit.pos, .px = c->fit.outline.centre, .confidence = c->confidence,
-				    .radius_px = c->fit.outline.radius_px, .rim_support = c->fit.support};
+	return (struct vision_ball){.pos = c->fit.pos,
+				    .px = c->fit.outline.centre,
+				    .confidence = c->confidence,
+				    .radius_px = c->fit.outline.radius_px,
+				    .rim_support = c->fit.support};
 }
 
 static bool is_explained(const struct vision *v, const struct vision_result *r, vec2 px)
@@ -193,14 +200,16 @@ static bool is_occluded(const struct vision *v, const struct vision_result *r)
 	return sum > OCCLUDED_CELLS;
 }
 
-/* ---- single frames --------------------------------------------------------------------------------------------------- */
+/* ---- single frames
+ * --------------------------------------------------------------------------------------------------- */
 
-static int check_frame(const struct vision *v, const struct image *frame, struct camera_intrinsics *in, char *err, size_t err_size)
+static int check_frame(const struct vision *v, const struct image *frame, struct camera_intrinsics *in, char *err,
+		       size_t err_size)
 {
 	if (camera_scale(&v->def.intrinsics, frame->width, frame->height, in))
 		return 0;
-	return vision_fail(-EINVAL, err, err_size, "a frame of %d x %d px does not fit a camera of %d x %d px", frame->width,
-			   frame->height, v->def.intrinsics.width, v->def.intrinsics.height);
+	return vision_fail(-EINVAL, err, err_size, "a frame of %d x %d px does not fit a camera of %d x %d px",
+			   frame->width, frame->height, v->def.intrinsics.width, v->def.intrinsics.height);
 }
 
 static bool place(struct vision *v, struct vision_result *r)
@@ -225,7 +234,8 @@ static void report_single(const struct vision *v, struct vision_result *r)
 	r->occluded = is_occluded(v, r);
 }
 
-int vision_detect(struct vision *vision, const struct image *frame, struct vision_result *out, char *err, size_t err_size)
+int vision_detect(struct vision *vision, const struct image *frame, struct vision_result *out, char *err,
+		  size_t err_size)
 {
 	struct vision_result r = {0};
 	int rc = check_frame(vision, frame, &r.camera.in, err, err_size);
@@ -247,7 +257,8 @@ int vision_detect(struct vision *vision, const struct image *frame, struct visio
 	return 0;
 }
 
-/* ---- streams --------------------------------------------------------------------------------------------------------- */
+/* ---- streams
+ * --------------------------------------------------------------------------------------------------------- */
 
 static void report_tracks(const struct vision *v, struct vision_result *r)
 {
@@ -309,7 +320,8 @@ int vision_track(struct vision *vision, const struct image *frame, double time, 
 	vision->width = frame->width;
 	vision->height = frame->height;
 	bool urgent = vision->tracking && scan_changes(s, frame) > BUMP_SHARE * s->cells_x * s->cells_y;
-	enum calibration_news news = calibration_track(&vision->stream, frame, &r.camera.in, time, urgent, r.reason, sizeof(r.reason));
+	enum calibration_news news =
+		calibration_track(&vision->stream, frame, &r.camera.in, time, urgent, r.reason, sizeof(r.reason));
 	if (news == CALIBRATION_LOST) {
 		r.markers_seen = vision->stream.now_count;
 		vision->tracking = false;
