@@ -288,22 +288,28 @@ START_TEST(vision_refuses_sources_that_are_none)
 }
 END_TEST
 
+static bool is_uncalibrated(void)
+{
+	return strcmp((const char *)service_status(awaited)->state, "not calibrated") == 0;
+}
+
 START_TEST(vision_says_why_it_is_not_calibrated)
 {
 	struct image_buffer grey = {0};
 	struct byte_buffer jpeg = {0};
 	char err[300];
 	pid_t pid = service_start("billiard-vision");
+	awaited = pid;
+	threshold = 1;
 	publish_camera("this is no JPEG at all", 22);
+	ck_assert(fixture_wait(bus, has_ignored, 5));
 	ck_assert_int_eq(image_buffer_reserve(&grey, 1280, 720), 0);
 	memset(grey.image.data, 90, (size_t)(grey.image.stride * 720));
 	ck_assert_int_eq(image_encode_jpeg(&grey.image, 90, &jpeg, err, sizeof err), 0);
 	publish_camera(jpeg.data, jpeg.size);
 	ck_assert(fixture_wait(bus, saw_nothing, 10));
 	ck_assert_int_eq(heard.state.ball_count, 0);
-	awaited = pid;
-	threshold = 1;
-	ck_assert(fixture_wait(bus, has_ignored, 5));
+	ck_assert(fixture_wait(bus, is_uncalibrated, 5));
 	ck_assert_str_eq((const char *)service_status(pid)->state, "not calibrated");
 	image_buffer_finish(&grey);
 	byte_buffer_finish(&jpeg);
