@@ -1,5 +1,5 @@
 /* What the schemes of sharing work are worth: nodes a second at one worker and two, time to exhaustion, waiting, the manager's part, and the
- * windows' period and length against throughput. Prints tables and BUILD/planner.csv. */
+ * windows' period and length against all that. Prints tables, writes BUILD/planner.csv. */
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
@@ -10,7 +10,7 @@
 #include "search_scenes.h"
 
 static int rounds = 5;
-static double search_seconds = 1;
+static double search_seconds = 1, hold_seconds = 10;
 
 static double clock_of(clockid_t clock)
 {
@@ -180,71 +180,116 @@ static void bench_throughput(struct report *report, const struct table *table)
 		}
 }
 
-static void bench_exhaustion(struct report *report, const struct table *table)
+static struct plan_request exhausted_request(const struct table *table)
 {
 	struct random random = {20211221};
 	struct ball ball[BALL_MAX];
-	char name[80];
-	scene_random(&random, table, 0.003, ball, 9);
-	struct plan_request request = scene_request(ball, 9);
+	scene_random(&random, table, 0.003, ball, 12);
+	struct plan_request request = scene_request(ball, 12);
 	request.target = TARGET_ANY;
-	request.rails = 1;
+	request.rails = 2;
 	request.depth = 2;
 	request.speeds = 2;
 	request.plans = 100;
-	print_head("to exhaustion: 9 balls, two shots deep, one cushion, 100 plans wanted");
+	return request;
+}
+
+/* The quickest of several. */
+static struct run quickest_of(const struct table *table, const struct way *way, const struct plan_request *request)
+{
+	struct run run = measure(table, way, request);
+	for (int i = 1; i < 2 * rounds; i++) {
+		struct run again = measure(table, way, request);
+		if (again.wall < run.wall)
+			run = again;
+	}
+	return run;
+}
+
+static void bench_exhaustion(struct report *report, const struct table *table)
+{
+	char name[80];
+	struct plan_request request = exhausted_request(table);
+	print_head("to exhaustion: 12 balls, two shots deep, two cushions, 100 plans wanted");
 	for (int s = 0; s < SCHEME_COUNT; s++)
 		for (int workers = 1; workers <= 2; workers++) {
 			struct way way = {"thesis", (enum plan_scheme)s, workers, 0.1, 0.004};
-			struct run run = measure(table, &way, &request);
-			for (int i = 1; i < 4 * rounds; i++) {
-				struct run again = measure(table, &way, &request);
-				if (again.wall < run.wall)
-					run = again;
-			}
+			struct run run = quickest_of(table, &way, &request);
 			print_run(&way, &run);
 			snprintf(name, sizeof name, "planner.%s_exhausted_%d", scheme_name(way.scheme), workers);
 			report_number(report, name, 1e3 * run.wall, "ms");
 		}
 }
 
-/* Throughput and waiting against k and n. */
+static void measure_windows(FILE *csv, const struct table *table, const struct way *way, double share)
+{
+	struct plan_request endless = long_request(table), exhausted = exhausted_request(table);
+	struct run run = best_of(table, way, &endless), whole = quickest_of(table, way, &exhausted);
+	const struct plan_figures *f = &run.figures;
+	double waited = whole.waited / (whole.wall * way->workers);
+	printf("%-8s %8.3g %8.3g %10.0f %10.0f %8llu %8llu %8llu %8llu %12.2f %8.2f%% %8llu\n", scheme_name(way->scheme), 1e3 * way->period,
+	       1e3 * way->window, run.work / run.wall, run.work / run.cpu, (unsigned long long)f->windows_held,
+	       (unsigned long long)f->windows_missed, (unsigned long long)f->windows_blocked, (unsigned long long)f->windows_late,
+	       1e3 * whole.wall, 100 * waited, (unsigned long long)whole.figures.on_demand);
+	fprintf(csv, "%s,%g,%g,%g,%g,%g,%g,%g\n", scheme_name(way->scheme), share, 1e3 * way->period, 1e3 * way->window, run.work / run.wall,
+		run.work / run.cpu, 1e3 * whole.wall, 100 * waited);
+	fflush(stdout);
+}
+
+/* Throughput of an endless search, and time and waiting of one that ends, against k and n. */
 static void bench_windows(FILE *csv, const struct table *table)
 {
 	static const double period[] = {0.002, 0.005, 0.01, 0.02, 0.05, 0.1, 0.2, 0.5}, share[] = {0.04, 0.33};
-	struct plan_request request = long_request(table);
-	printf("\nwindows: k and n, two workers, one second\n%8s %8s %10s %10s %8s %8s %8s %8s %8s %9s\n", "k ms", "n ms", "work/s", "work/cpu s",
-	       "waited", "held", "missed", "blocked", "late", "on dem.");
+	printf("\nwindows: k and n, two workers; the endless search of %g s, then the one to exhaustion\n%-8s %8s %8s %10s %10s %8s %8s %8s %8s %12s %9s %8s\n",
+	       search_seconds, "scheme", "k ms", "n ms", "work/s", "work/cpu s", "held", "missed", "blocked", "late", "exhausted ms", "waited",
+	       "on dem.");
 	for (int n = 0; n < 2; n++)
-		for (size_t k = 0; k < sizeof period / sizeof *period; k++) {
-			struct way way = {"thesis", SCHEME_WINDOWS, 2, period[k], share[n] * period[k]};
-			struct run run = best_of(table, &way, &request);
-			const struct plan_figures *f = &run.figures;
-			double waited = run.waited / (run.wall * way.workers);
-			printf("%8.3g %8.3g %10.0f %10.0f %7.2f%% %8llu %8llu %8llu %8llu %9llu\n", 1e3 * way.period, 1e3 * way.window,
-			       run.work / run.wall, run.work / run.cpu, 100 * waited, (unsigned long long)f->windows_held,
-			       (unsigned long long)f->windows_missed, (unsigned long long)f->windows_blocked,
-			       (unsigned long long)f->windows_late, (unsigned long long)f->on_demand);
-			fprintf(csv, "windows %g,%g,%g,%g,%g,%g\n", share[n], 1e3 * way.period, 1e3 * way.window, run.work / run.wall,
-				run.work / run.cpu, waited);
-			fflush(stdout);
+		for (size_t k = 0; k < sizeof period / sizeof *period; k++)
+			measure_windows(csv, table, &(struct way){"thesis", SCHEME_WINDOWS, 2, period[k], share[n] * period[k]}, share[n]);
+	for (int s = 0; s < SCHEME_COUNT; s++)
+		if (s != SCHEME_WINDOWS)
+			measure_windows(csv, table, &(struct way){"thesis", (enum plan_scheme)s, 2, 0.1, 0.004}, 0);
+}
+
+/* Searches without a pause, with the shipped windows: how many are held. */
+static void bench_hold(struct report *report, const struct table *table)
+{
+	struct planner *planner = make(table, &(struct way){"real", SCHEME_WINDOWS, 2, 0.1, 0.004});
+	struct plan_request request = long_request(table);
+	struct plan_result result;
+	struct plan_figures f;
+	char err[200];
+	double end = seconds(NULL) + hold_seconds;
+	for (int variant = 0; seconds(NULL) < end; variant++) {
+		scene_after_break(table, variant, request.ball);
+		request.state.in_hand = request.ball[0].phase == BALL_POTTED;
+		request.speeds = 10;
+		request.budget.seconds = end - seconds(NULL) + 0.001;
+		if (planner_run(planner, &request, NULL, NULL, &result, err, sizeof err) != 0) {
+			fprintf(stderr, "bench: %s\n", err);
+			exit(EXIT_FAILURE);
 		}
-	for (int s = 0; s < SCHEME_COUNT; s++) {
-		struct way way = {"thesis", (enum plan_scheme)s, 2, 0.1, 0.004};
-		struct run run = best_of(table, &way, &request);
-		fprintf(csv, "%s,0,0,%g,%g,%g\n", scheme_name(way.scheme), run.work / run.wall, run.work / run.cpu,
-			run.waited / (run.wall * way.workers));
 	}
+	planner_figures(planner, &f);
+	double held = (double)f.windows_held, missed = (double)(f.windows_missed + f.windows_blocked);
+	printf("\nwindows held in %g s of searches one after the other, k 100 ms, n 4 ms\n", hold_seconds);
+	report_number(report, "planner.windows_held", held, "count");
+	report_number(report, "planner.windows_missed", missed, "count");
+	report_number(report, "planner.windows_held_share", 100 * held / (held + missed), "%");
+	report_number(report, "planner.windows_late", (double)f.windows_late, "count");
+	report_number(report, "planner.windows_on_demand", (double)f.on_demand, "count");
+	planner_destroy(planner);
 }
 
 int main(int argc, char **argv)
 {
 	if (argc < 2 || argc > 5) {
-		fprintf(stderr, "usage: %s BUILD [throughput|exhaustion|windows [SECONDS [ROUNDS]]]\n", argv[0]);
+		fprintf(stderr, "usage: %s BUILD [throughput|exhaustion|windows|hold [SECONDS [ROUNDS]]]\n", argv[0]);
 		return EXIT_FAILURE;
 	}
 	const char *part = argc > 2 ? argv[2] : "";
-	search_seconds = argc > 3 ? strtod(argv[3], NULL) : search_seconds;
+	if (argc > 3)
+		search_seconds = hold_seconds = strtod(argv[3], NULL);
 	rounds = argc > 4 ? atoi(argv[4]) : rounds;
 	char path[512];
 	snprintf(path, sizeof path, "%s/planner.csv", argv[1]);
@@ -255,13 +300,15 @@ int main(int argc, char **argv)
 	}
 	struct report *report = report_open(argv[1], "bench.json");
 	struct table table = scene_thesis_table();
-	fprintf(csv, "scheme,k_ms,n_ms,work_per_s,work_per_cpu_s,waited\n");
+	fprintf(csv, "scheme,share,k_ms,n_ms,work_per_s,work_per_cpu_s,exhausted_ms,waited_percent\n");
 	if (!*part || strcmp(part, "throughput") == 0)
 		bench_throughput(report, &table);
 	if (!*part || strcmp(part, "exhaustion") == 0)
 		bench_exhaustion(report, &table);
 	if (!*part || strcmp(part, "windows") == 0)
 		bench_windows(csv, &table);
+	if (!*part || strcmp(part, "hold") == 0)
+		bench_hold(report, &table);
 	fclose(csv);
 	return report_close(report) == 0 ? EXIT_SUCCESS : EXIT_FAILURE;
 }
