@@ -116,6 +116,11 @@ static void publish_status(struct process *process)
 {
 	if (process->describe)
 		process->describe(process->context, process);
+	/* Here and not for each message: a flood of bad ones must not flood the journal. */
+	if (bus_ignored(process->bus) > process->ignored_logged) {
+		process->ignored_logged = bus_ignored(process->bus);
+		process_error(process, "ignored %s", bus_last_ignored(process->bus));
+	}
 	process->status.utime = process_utime();
 	process->status.received = bus_received(process->bus);
 	process->status.ignored = bus_ignored(process->bus);
@@ -182,10 +187,6 @@ static int on_bus(sd_event_source *source, int fd, uint32_t events, void *contex
 		/* The end of a replayed log: nothing more will come. */
 		publish_status(process);
 		return sd_event_exit(process->event, 0);
-	}
-	if (bus_ignored(process->bus) > process->ignored_logged) {
-		process->ignored_logged = bus_ignored(process->bus);
-		process_error(process, "ignored %s", bus_last_ignored(process->bus));
 	}
 	return 0;
 }
