@@ -26,7 +26,7 @@ int scan_init(struct scan *scan, int width, int height)
 	scan->reference = malloc(3 * n);
 	scan->changed = calloc(2 * cells, sizeof(*scan->changed));
 	scan->difference = calloc(cells, sizeof(*scan->difference));
-	scan->foreign = calloc(cells, sizeof(*scan->foreign));
+	scan->foreign = calloc(2 * cells, sizeof(*scan->foreign));
 	if (scan->bgr && scan->mark && scan->row_from && scan->row_to && scan->cell && scan->cell_weight &&
 	    scan->reference && scan->changed && scan->difference && scan->foreign)
 		return 0;
@@ -154,6 +154,7 @@ bool scan_place(struct scan *scan, const struct camera *camera, const struct tab
 		return false;
 	scan->cells_x = (scan->width + SCAN_CELL - 1) / SCAN_CELL;
 	scan->cells_y = (scan->height + SCAN_CELL - 1) / SCAN_CELL;
+	scan->half = scan->foreign + scan->cells_x * scan->cells_y;
 	fill_rows(scan, px);
 	return true;
 }
@@ -403,7 +404,9 @@ static const float OFF_FLOOR = 0.04f; /* of the cloth's length, squared: noise o
 static const float DARK_SURE = 0.28f * 0.28f, DARK_HALF = 0.334f * 0.334f, LIGHT_SURE = 1.6f * 1.6f,
 		   LIGHT_HALF = 1.458f * 1.458f;
 
-enum { RUN = 8 }; /* pixels that share a cloth colour */
+static const float WHITE_LEVEL = 250, CLOTH_LEVEL = 220;
+enum { BUSY_PIXELS = 6 }; /* half marked ones that make a cell worth a look */
+enum { RUN = 8 };	  /* pixels that share a cloth colour */
 
 /* Straight loops over arrays: the compiler makes vectors of them. */
 static void mark_run(const uint8_t *restrict p, const float cloth[3], uint8_t *restrict mark)
@@ -415,13 +418,17 @@ static void mark_run(const uint8_t *restrict p, const float cloth[3], uint8_t *r
 		g[i] = p[3 * i + 1];
 		r[i] = p[3 * i + 2];
 	}
-	int level[RUN];
+	int level[RUN], cloth_is_dimmer = cloth[0] < CLOTH_LEVEL || cloth[1] < CLOTH_LEVEL || cloth[2] < CLOTH_LEVEL;
 	for (int i = 0; i < RUN; i++) {
 		float pc = b[i] * cloth[0] + g[i] * cloth[1] + r[i] * cloth[2];
 		float pp = b[i] * b[i] + g[i] * g[i] + r[i] * r[i];
 		float along = pc * pc * inverse, off = pp - along, unit = pp + OFF_FLOOR * cc;
-		int sure = (off > OFF_SURE * unit) | (along < DARK_SURE * cc) | (along > LIGHT_SURE * cc);
-		int half = (off > OFF_HALF * unit) | (along < DARK_HALF * cc) | (along > LIGHT_HALF * cc);
+		/* Blown out, where cloth is not: white, whatever the exposure. */
+		float least = b[i] < g[i] ? b[i] : g[i];
+		least = least < r[i] ? least : r[i];
+		int white = (least >= WHITE_LEVEL) & cloth_is_dimmer;
+		int sure = white | (off > OFF_SURE * unit) | (along < DARK_SURE * cc) | (along > LIGHT_SURE * cc);
+		int half = white | (off > OFF_HALF * unit) | (along < DARK_HALF * cc) | (along > LIGHT_HALF * cc);
 		level[i] = sure * 191 + half * 64;
 	}
 	for (int i = 0; i < RUN; i++)
@@ -466,11 +473,14 @@ static struct box cell_box(const struct scan *scan, int cx, int cy)
 static void count_foreign(struct scan *scan, int cx, int cy)
 {
 	struct box b = cell_box(scan, cx, cy);
-	int foreign = 0;
+	int foreign = 0, half = 0;
 	for (int y = b.y0; y < b.y1; y++)
-		for (int x = b.x0; x < b.x1; x++)
+		for (int x = b.x0; x < b.x1; x++) {
 			foreign += scan->mark[y * scan->width + x] >> 7;
+			half += (scan->mark[y * scan->width + x] >> 6) != 0;
+		}
 	scan->foreign[cy * scan->cells_x + cx] = (uint16_t)foreign;
+	scan->half[cy * scan->cells_x + cx] = (uint16_t)half;
 }
 
 static void dilate(struct scan *scan, const uint8_t *core)
@@ -498,7 +508,7 @@ bool scan_frame(struct scan *scan, const struct image *frame)
 			count_foreign(scan, cx, cy);
 	uint8_t *core = scan->changed + scan->cells_x * scan->cells_y;
 	for (int i = 0; i < scan->cells_x * scan->cells_y; i++)
-		core[i] = scan->foreign[i] > 0;
+		core[i] = scan->half[i] >= BUSY_PIXELS;
 	dilate(scan, core);
 	memcpy(scan->reference, scan->bgr, 3 * (size_t)scan->width * (size_t)scan->height);
 	return true;

@@ -30,6 +30,7 @@ struct scan {
 	uint8_t *changed;     /* per cell: there is something new in it or beside it; after a whole frame: anything but
 				 cloth */
 	uint16_t *foreign;    /* per cell: pixels that are not cloth */
+	uint16_t *half;	      /* per cell: pixels that may not be; behind foreign */
 	uint16_t *difference; /* per cell: mean absolute difference, 1/16 level */
 };
 
