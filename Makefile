@@ -35,7 +35,7 @@ TESTS := fsm stability plan_message controller planner_service planner_bus bus p
 	rules cost geometry frontier pool scheme candidate plan plan_thesis plan_hard plan_complete tolerance refine solutions request \
 	ball contact detect event inverse model motion queue roots sim sim_hard table trace \
 	camera pose fit colour stabilise image_io capture vision vision_photos
-TEST_SHARED := harness brute_force bus_fixture service_fixture planner_client random poly_judge scenes search_scenes shot_compare vision_scene
+TEST_SHARED := harness brute_force bus_fixture service_fixture planner_client random poly_judge scenes search_scenes shot_compare thesis_lists vision_scene
 # tests that are scripts: tests/NAME.sh, called with the build folder
 TEST_SCRIPTS := cli demo planner units
 # bench/bench_NAME.c each; bench/NAME.c shared by them
@@ -82,7 +82,7 @@ ARCHIVES := $(BUILD)/libapp.a $(BUILD)/liblcmtypes.a $(BUILD)/libsearch.a $(BUIL
 PROGRAM_BINS := $(addprefix $(BUILD)/,$(PROGRAMS))
 TEST_BINS := $(patsubst %,$(BUILD)/tests/test_%,$(TESTS))
 FUZZ_BINS := $(patsubst %,$(BUILD)/fuzz_%,$(FUZZERS))
-BENCH_SHARED_O := $(call obj,bench,$(BENCH_SHARED)) $(call obj,tests,brute_force bus_fixture planner_client random scenes search_scenes shot_compare)
+BENCH_SHARED_O := $(call obj,bench,$(BENCH_SHARED)) $(call obj,tests,brute_force bus_fixture planner_client random scenes search_scenes shot_compare thesis_lists)
 EVAL_BINS := $(patsubst %,$(BUILD)/bench/eval_%,$(EVALS))
 BENCH_BINS := $(patsubst %,$(BUILD)/bench/bench_%,$(BENCHES))
 

@@ -10,44 +10,13 @@
 #include "report.h"
 #include "scenes.h"
 #include "search_scenes.h"
+#include "thesis_lists.h"
 
 enum { PATH_SIZE = 512, TOP = 10 };
 static const double degree = M_PI / 180;
 
 /* ---- the lists of the thesis' program
  * ---------------------------------------------------------------------------------- */
-
-static bool same_shot(const struct position *position, const struct plan_shot *shot, const json_t *want)
-{
-	const json_t *potted = json_object_get(want, "potted");
-	double angle = json_number_value(json_object_get(want, "angle_deg"));
-	double speed = json_number_value(json_object_get(want, "speed_mm_s"));
-	if (fabs(remainder(shot->shot.angle / degree - angle, 360)) > 0.2 ||
-	    fabs(1000 * shot->shot.speed / speed - 1) > 0.02 || json_array_size(potted) != (size_t)shot->potted_count)
-		return false;
-	for (int i = 0; i < shot->potted_count; i++) {
-		bool found = false;
-		for (size_t k = 0; k < json_array_size(potted); k++)
-			found |= strcmp(json_string_value(json_array_get(json_array_get(potted, k), 0)),
-					position->name[shot->potted[i].ball]) == 0;
-		if (!found)
-			return false;
-	}
-	return true;
-}
-
-static int rank_of(const struct position *position, const struct plan_result *result, const json_t *shots)
-{
-	for (int i = 0; i < result->plan_count; i++) {
-		const struct plan *plan = &result->plan[i];
-		bool same = json_array_size(shots) == (size_t)plan->shot_count;
-		for (int s = 0; same && s < plan->shot_count; s++)
-			same = same_shot(position, &plan->shot[s], json_array_get(shots, (size_t)s));
-		if (same)
-			return i;
-	}
-	return -1;
-}
 
 static void compare_list(struct report *report, struct planner *planner, const struct position *position,
 			 const char *name, const char *key, const json_t *want)
@@ -62,7 +31,7 @@ static void compare_list(struct report *report, struct planner *planner, const s
 	int found = 0, last = -1, size = (int)json_array_size(ranked);
 	bool in_order = true;
 	for (int i = 0; i < size; i++) {
-		int rank = rank_of(position, &result, json_object_get(json_array_get(ranked, (size_t)i), "shots"));
+		int rank = thesis_rank(position, &result, json_array_get(ranked, (size_t)i));
 		found += rank >= 0;
 		if (i < TOP) {
 			in_order &= rank > last;

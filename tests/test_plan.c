@@ -6,6 +6,7 @@
 #include <errno.h>
 #include <malloc.h>
 #include <pthread.h>
+#include <semaphore.h>
 #include <string.h>
 
 enum { TRACE_MAX = 4096 };
@@ -203,14 +204,26 @@ START_TEST(progress_tells_improvements)
 }
 END_TEST
 
-static void *cancel_soon(void *planner)
+/* Cancels once the search has told its first proposal. */
+struct canceller {
+	struct planner *planner;
+	sem_t told;
+};
+
+static void *cancel_then(void *context)
 {
-	struct timespec wait = {0, 20 * 1000 * 1000};
-	for (int i = 0; i < 20; i++) { /* the first may come before the search begins */
-		nanosleep(&wait, NULL);
-		planner_cancel(planner);
-	}
+	struct canceller *canceller = context;
+	while (sem_wait(&canceller->told) != 0)
+		continue;
+	planner_cancel(canceller->planner);
 	return NULL;
+}
+
+static void tell(void *context, const struct plan_result *result)
+{
+	struct canceller *canceller = context;
+	(void)result;
+	sem_post(&canceller->told);
 }
 
 START_TEST(cancelled_from_another_thread)
@@ -227,8 +240,10 @@ START_TEST(cancelled_from_another_thread)
 	struct plan_result result;
 	char err[100];
 	pthread_t thread;
-	ck_assert_int_eq(pthread_create(&thread, NULL, cancel_soon, planner), 0);
-	ck_assert_int_eq(planner_run(planner, &request, NULL, NULL, &result, err, sizeof err), -ECANCELED);
+	struct canceller canceller = {.planner = planner};
+	sem_init(&canceller.told, 0, 0);
+	ck_assert_int_eq(pthread_create(&thread, NULL, cancel_then, &canceller), 0);
+	ck_assert_int_eq(planner_run(planner, &request, tell, &canceller, &result, err, sizeof err), -ECANCELED);
 	pthread_join(thread, NULL);
 	ck_assert_int_eq(result.status, PLAN_CANCELLED);
 	ck_assert(!result.exhausted);

@@ -2,6 +2,7 @@
 #include "harness.h"
 #include "search_scenes.h"
 #include "scenes.h"
+#include "thesis_lists.h"
 
 #include <jansson.h>
 #include <stdio.h>
@@ -11,7 +12,6 @@
 #include "app/position.h"
 
 enum { PATH_SIZE = 512 };
-static const double degree = M_PI / 180;
 
 /* What our own search reaches of each list; theirs lose digits where balls meet several times. */
 static const struct list {
@@ -24,45 +24,6 @@ static const struct list {
 	{"situation2", "rails_0_depth_2_speeds_1", 0, 2, 1, 5, 5},
 	{"situation2", "rails_3_depth_2_speeds_1", 3, 2, 1, 83, 10},
 };
-
-static bool potted_same(const struct position *position, const struct plan_shot *shot, json_t *potted)
-{
-	if (json_array_size(potted) != (size_t)shot->potted_count)
-		return false;
-	for (int i = 0; i < shot->potted_count; i++) {
-		bool found = false;
-		for (size_t k = 0; k < json_array_size(potted); k++)
-			found |= strcmp(json_string_value(json_array_get(json_array_get(potted, k), 0)),
-					position->name[shot->potted[i].ball]) == 0;
-		if (!found)
-			return false;
-	}
-	return true;
-}
-
-static bool shot_same(const struct position *position, const struct plan_shot *shot, json_t *want)
-{
-	double angle = json_number_value(json_object_get(want, "angle_deg"));
-	double speed = json_number_value(json_object_get(want, "speed_mm_s"));
-	return fabs(remainder(shot->shot.angle / degree - angle, 360)) <= 0.2 &&
-	       fabs(1000 * shot->shot.speed / speed - 1) <= 0.02 &&
-	       potted_same(position, shot, json_object_get(want, "potted"));
-}
-
-/* Rank of the wanted sequence in ours, -1 when it is not there. */
-static int rank_of(const struct position *position, const struct plan_result *result, json_t *want)
-{
-	json_t *shots = json_object_get(want, "shots");
-	for (int i = 0; i < result->plan_count; i++) {
-		const struct plan *plan = &result->plan[i];
-		bool same = json_array_size(shots) == (size_t)plan->shot_count;
-		for (int s = 0; same && s < plan->shot_count; s++)
-			same = shot_same(position, &plan->shot[s], json_array_get(shots, (size_t)s));
-		if (same)
-			return i;
-	}
-	return -1;
-}
 
 START_TEST(lists_of_the_thesis)
 {
@@ -89,7 +50,7 @@ START_TEST(lists_of_the_thesis)
 	struct plan_result result = scene_run(planner, &request);
 	int found = 0, last = -1;
 	for (size_t i = 0; i < json_array_size(want); i++) {
-		int rank = rank_of(&position, &result, json_array_get(want, i));
+		int rank = thesis_rank(&position, &result, json_array_get(want, i));
 		found += rank >= 0;
 		if ((int)i < l->in_order) {
 			ck_assert_msg(rank > last, "%s %s: number %zu is at %d after %d", l->situation, l->key, i, rank,

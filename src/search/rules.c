@@ -68,8 +68,7 @@ struct rules_state rules_state_from_position(const struct ball *ball, int count)
 	return (struct rules_state){.on = count_reds(ball, count) > 0 ? ON_RED : ON_CLEARANCE};
 }
 
-/* The object ball that the cue ball touches first, -1 when it touches none. */
-static int first_contact(const struct trace *trace, int cue)
+int rules_first_contact(const struct trace *trace, int cue)
 {
 	for (int i = 0; i < trace->count; i++) {
 		const struct event *event = &trace->entry[i].event;
@@ -94,7 +93,7 @@ static void gather(const struct trace *trace, struct facts *facts)
 		if (facts->start[i].colour == COLOUR_WHITE)
 			facts->cue = i;
 	if (facts->cue >= 0)
-		facts->first = first_contact(trace, facts->cue);
+		facts->first = rules_first_contact(trace, facts->cue);
 	for (int i = 0; i < trace->count; i++) {
 		const struct event *event = &trace->entry[i].event;
 		if (event->kind != EVENT_POCKET)

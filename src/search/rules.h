@@ -36,6 +36,9 @@ bool rules_ball_on(const struct rules_state *state, const struct ball *ball, int
 /* State from a position alone: reds on the table -> ON_RED, none -> ON_CLEARANCE. */
 struct rules_state rules_state_from_position(const struct ball *ball, int count);
 
+/* The object ball that ball cue touches first, -1 when it touches none. */
+int rules_first_contact(const struct trace *trace, int cue);
+
 /* Judges a finished simulation from its trace (first contact, potted balls), respots colours, gives the next state.
  * nominated: index of the ball aimed at (for ON_COLOUR), -1 unknown. */
 void rules_judge(const struct table *table, const struct rules_state *state, const struct trace *trace, int nominated,

@@ -84,17 +84,6 @@ static void aim_at(const struct scene *scene, int state, int ball, double off, i
 	}
 }
 
-/* The ball that the cue ball touches first, -1 none. */
-static int16_t touched(const struct trace *trace, int cue)
-{
-	for (int i = 0; i < trace->count; i++) {
-		const struct event *event = &trace->entry[i].event;
-		if (event->kind == EVENT_BALL_BALL && (event->ball == cue || event->other == cue))
-			return event->ball == cue ? event->other : event->ball;
-	}
-	return -1;
-}
-
 static bool play(struct planner *planner, const struct aim *aim, struct record *record)
 {
 	const struct state *state = &planner->state[aim->state];
@@ -109,7 +98,7 @@ static bool play(struct planner *planner, const struct aim *aim, struct record *
 	bool done = shot_play(planner->work, planner->def.table, &planner->def.model, state->ball, planner->ball_count,
 			      &state->rules, record, &outcome);
 	record->target = record->pocket = -1;
-	record->chain[1] = done ? touched(&planner->work->trace, planner->cue) : -1;
+	record->chain[1] = done ? (int16_t)rules_first_contact(&planner->work->trace, planner->cue) : -1;
 	record->chain[2] = record->chain[3] = -1;
 	record->chain_count = record->chain[1] >= 0 ? 2 : 1;
 	record->cost = record->search_cost +
