@@ -72,6 +72,14 @@ static void expect_answer(int wanted)
 		return;
 	}
 	double over = client.last - client.sent - fmax(client.request.budget_s, 0);
+	if (over > 0.1) {
+		const billiard_plan_request_t *r = &client.request;
+		printf("request %lld: %.0f ms over its budget of %.0f; %d balls, depth %d, rails %d, chains %d, speeds %d, plans %d, on %d, in hand %d, "
+		       "nodes %lld; %.0f ms by its own account\n",
+		       (long long)client.id, 1e3 * over, 1e3 * r->budget_s, r->ball_count, r->depth, r->rails, r->max_balls, r->speeds, r->plans,
+		       r->on, r->in_hand, (long long)r->budget_nodes, 1e3 * client.plan.seconds);
+		fflush(stdout);
+	}
 	seen.late += over > slack;
 	seen.worst = fmax(seen.worst, over);
 	if (client.plan.status != wanted || !plan_message_check(&client.plan, &config.table)) {
