@@ -1,6 +1,8 @@
 /* Each program over a real bus: its happy path, wrong use, bad messages, SIGTERM, SIGKILL. */
 #include <math.h>
+#include <pthread.h>
 #include <signal.h>
+#include <stdatomic.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
@@ -87,6 +89,45 @@ START_TEST(malformed_messages_are_counted_and_sigterm_ends_in_a_second)
 	ck_assert_int_eq(fixture_end(pid, 1), 0);
 	ck_assert(fixture_wait(bus, has_stopped, 1));
 	ck_assert_int_eq(service_status(pid)->ignored, threshold);
+}
+END_TEST
+
+static atomic_bool flooding;
+
+/* Bad and foreign messages as fast as they go. */
+static void *flood(void *context)
+{
+	billiard_table_state_t foreign = {.utime = 1};
+	struct raw_message junk = {"junk", 4};
+	while (atomic_load(&flooding)) {
+		bus_publish(context, "COMMAND", &bus_table_state, &foreign);
+		bus_publish(context, "COMMAND", &bus_raw, &junk);
+	}
+	return NULL;
+}
+
+static bool has_ignored_many(void)
+{
+	const billiard_status_t *s = service_status(awaited);
+	return s && s->ignored > 5000 && s->utime > threshold;
+}
+
+START_TEST(a_flood_keeps_nobody_from_timers_and_signals)
+{
+	pthread_t thread;
+	struct bus *other = fixture_bus();
+	pid_t pid = awaited = service_start("billiard-infinity");
+	atomic_store(&flooding, true);
+	ck_assert_int_eq(pthread_create(&thread, NULL, flood, other), 0);
+	/* STATUS and DRAW go on meanwhile. */
+	threshold = process_utime() + 1500000;
+	ck_assert(fixture_wait(bus, has_ignored_many, 20));
+	ck_assert_int_ge(heard.draws, 2);
+	kill(pid, SIGTERM);
+	ck_assert_int_eq(fixture_end(pid, 1), 0);
+	atomic_store(&flooding, false);
+	pthread_join(thread, NULL);
+	bus_close(other);
 }
 END_TEST
 
@@ -325,6 +366,7 @@ Suite *test_suite(void)
 	tcase_add_checked_fixture(each, service_setup, service_teardown);
 	tcase_add_loop_test(each, wrong_use_gives_one_line_and_status_2, 0, PROGRAM_COUNT);
 	tcase_add_loop_test(each, malformed_messages_are_counted_and_sigterm_ends_in_a_second, 0, PROGRAM_COUNT);
+	tcase_add_test(each, a_flood_keeps_nobody_from_timers_and_signals);
 	tcase_add_test(each, the_planner_answers_or_refuses);
 	tcase_add_test(each, infinity_asks_for_a_resting_table_and_draws_the_answer);
 	tcase_add_test(each, a_late_listener_gets_a_complete_picture_within_two_seconds);
