@@ -78,6 +78,14 @@ struct colour_feature colour_measure(const struct image *frame, const struct out
 	return f;
 }
 
+double colour_difference(const struct colour_feature *a, const struct colour_feature *b)
+{
+	double sum = 0;
+	for (int i = 0; i < F; i++)
+		sum += (a->v[i] - b->v[i]) * (a->v[i] - b->v[i]);
+	return sqrt(sum);
+}
+
 /* ---- learning
  * -------------------------------------------------------------------------------------------------------- */
 

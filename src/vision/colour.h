@@ -20,6 +20,9 @@ struct colour_feature {
 	double v[COLOUR_FEATURES];
 };
 
+/* How far two looks lie apart: about 0.1 for one ball in other light, 1 and more for other colours. */
+double colour_difference(const struct colour_feature *a, const struct colour_feature *b);
+
 /* One class: normal distribution of its features. samples 0: the class is not known. */
 struct colour_class {
 	int samples;

@@ -232,14 +232,6 @@ static bool is_clear(const struct candidate *c)
 	return c->fit.rays >= OUTLINE_POINTS * 3 / 4 && c->fit.support > 0.9;
 }
 
-static double unlike(const struct candidate *a, const struct candidate *b)
-{
-	double sum = 0;
-	for (int i = 0; i < COLOUR_FEATURES; i++)
-		sum += (a->look.v[i] - b->look.v[i]) * (a->look.v[i] - b->look.v[i]);
-	return sqrt(sum);
-}
-
 /* Median apparent radius of clear balls that look like one; returns how many there are. */
 static int scale_of_like(const struct detector *d, int i, const enum ball_colour class[DETECT_MAX], double *median)
 {
@@ -247,7 +239,8 @@ static int scale_of_like(const struct detector *d, int i, const enum ball_colour
 	int n = 0;
 	for (int j = 0; j < d->count; j++) {
 		const struct candidate *o = &d->candidate[j];
-		if (!is_clear(o) || class[j] != class[i] || unlike(&d->candidate[i], o) > LIKE_DISTANCE)
+		if (!is_clear(o) || class[j] != class[i] ||
+		    colour_difference(&d->candidate[i].look, &o->look) > LIKE_DISTANCE)
 			continue;
 		int at = n++;
 		for (; at > 0 && like[at - 1] > o->fit.scale; at--)

@@ -2,8 +2,7 @@
 
 #include <math.h>
 
-/* cos and sin of the points' angles. */
-static const double HALF = 0.13089969389957473 / 2; /* 2 pi / 48 / 2 */
+static const double FULL_TURN = 6.283185307179586;
 
 static void cross(const double a[3], const double b[3], double out[3])
 {
@@ -64,7 +63,7 @@ bool outline_of_ball(const struct camera *camera, vec2 pos, double radius, doubl
 	double r = radius * sqrt(1 - back) * scale;
 	double middle[3] = {pos.x - back * sight[0], pos.y - back * sight[1], radius - back * sight[2]};
 	/* Rotation by the angle between points, applied again and again. */
-	double c = 1, s = 0, dc = cos(2 * HALF), ds = sin(2 * HALF);
+	double c = 1, s = 0, dc = cos(FULL_TURN / OUTLINE_POINTS), ds = sin(FULL_TURN / OUTLINE_POINTS);
 	for (int i = 0; i < OUTLINE_POINTS; i++) {
 		double p[3];
 		for (int k = 0; k < 3; k++)

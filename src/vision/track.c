@@ -26,14 +26,6 @@ void tracker_forget(struct tracker *t)
 	memset(t->track, 0, sizeof(t->track));
 }
 
-static double unlike(const struct colour_feature *a, const struct colour_feature *b)
-{
-	double sum = 0;
-	for (int i = 0; i < COLOUR_FEATURES; i++)
-		sum += (a->v[i] - b->v[i]) * (a->v[i] - b->v[i]);
-	return sqrt(sum);
-}
-
 /* ---- one track
  * ------------------------------------------------------------------------------------------------------- */
 
@@ -112,7 +104,7 @@ static double mismatch(const struct tracker *t, const struct track *k, const str
 	/* What is not yet known to be a ball has no claim to things far away. */
 	if (k->confirmed)
 		reach += FASTEST * fmin(t->time - k->seen_time, 0.15);
-	double far = vec2_dist(predicted(k, t->time), c->fit.pos), other = unlike(&k->look, &c->look);
+	double far = vec2_dist(predicted(k, t->time), c->fit.pos), other = colour_difference(&k->look, &c->look);
 	return far < reach && other < LOOK_DISTANCE ? far / reach + 0.5 * other / LOOK_DISTANCE : INFINITY;
 }
 
