@@ -157,7 +157,7 @@ static struct plan_request long_request(const struct table *table)
 	request.target = TARGET_ANY;
 	request.rails = 3;
 	request.depth = 4;
-	request.speeds = 3;
+	request.speeds = 12;
 	request.plans = PLAN_MAX;
 	request.budget.seconds = search_seconds;
 	return request;
