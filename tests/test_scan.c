@@ -1,0 +1,177 @@
+#include "vision/scan.h"
+
+#include <math.h>
+#include <string.h>
+
+#include "vision/seeds.h"
+#include "vision_scene.h"
+
+static struct scan scan;
+static struct seeds seeds;
+static struct camera camera;
+static struct table table;
+static struct image_buffer image;
+
+static void setup(void)
+{
+	table = scene_table();
+	camera = scene_camera(0.01, -0.01);
+	ck_assert_int_eq(scan_init(&scan, 1280, 720), 0);
+	ck_assert_int_eq(seeds_init(&seeds, 1280, 720), 0);
+	ck_assert(scan_place(&scan, &camera, &table));
+	ck_assert(seeds_place(&seeds, &scan, &camera, &table));
+}
+
+static void teardown(void)
+{
+	scan_finish(&scan);
+	seeds_finish(&seeds);
+	image_buffer_finish(&image);
+}
+
+/* Pixels of a round patch on the bed become gain times what they are. */
+static void lighten(vec2 at, double radius_px, const double gain[3])
+{
+	vec2 px;
+	ck_assert(camera_project(&camera, at, 0, &px));
+	for (int y = (int)(px.y - radius_px); y <= px.y + radius_px; y++)
+		for (int x = (int)(px.x - radius_px); x <= px.x + radius_px; x++)
+			for (int c = 0; c < 3 && hypot(x - px.x, y - px.y) < radius_px; c++) {
+				uint8_t *p = image.image.data + y * image.image.stride + 3 * x + c;
+				*p = (uint8_t)fmin(255, gain[c] * *p);
+			}
+}
+
+static int marked_around(vec2 at)
+{
+	vec2 px;
+	int count = 0;
+	ck_assert(camera_project(&camera, at, 0, &px));
+	px = scan_from_full(&scan, px);
+	for (int y = (int)px.y - 5; y <= (int)px.y + 5; y++)
+		for (int x = (int)px.x - 5; x <= (int)px.x + 5; x++)
+			count += scan.mark[y * scan.width + x] >= SCAN_FOREIGN;
+	return count;
+}
+
+START_TEST(test_light_and_shade_are_cloth_balls_are_not)
+{
+	struct random r = random_begin("scan_marks");
+	struct scene_ball ball[2] = {{{0.3, 0.1}, {20, 20, 210}}, {{-0.4, -0.2}, {200, 110, 20}}};
+	scene_paint(&camera, &table, ball, 2, 3, &r, &image);
+	/* Uneven light over the whole bed, a shadow, the projector's light. */
+	for (int y = 0; y < 720; y++)
+		for (int x = 0; x < 3 * 1280; x++) {
+			uint8_t *p = image.image.data + y * image.image.stride + x;
+			*p = (uint8_t)(*p * (0.75 + 0.3 * x / 3840.0));
+		}
+	lighten((vec2){0.6, 0.3}, 12, (double[3]){0.5, 0.5, 0.5});
+	lighten((vec2){-0.6, 0.3}, 12, (double[3]){1.3, 1.3, 1.3});
+	ck_assert(scan_frame(&scan, &image.image));
+	ck_assert_int_eq(marked_around((vec2){0.6, 0.3}), 0);
+	ck_assert_int_eq(marked_around((vec2){-0.6, 0.3}), 0);
+	ck_assert_int_eq(marked_around((vec2){0, 0}), 0);
+	ck_assert_int_gt(marked_around(ball[0].pos), 100);
+	ck_assert_int_gt(marked_around(ball[1].pos), 100);
+	/* The cloth's colour is known under the ball. */
+	vec2 px;
+	float cloth[3];
+	camera_project(&camera, ball[0].pos, 0, &px);
+	scan_cloth_at(&scan, px, cloth);
+	ck_assert_float_eq_tol(cloth[1], (float)(150 * (0.75 + 0.3 * px.x / 1280)), 4);
+}
+END_TEST
+
+START_TEST(test_seeds_lie_on_balls)
+{
+	struct random r = random_begin("seeds");
+	struct scene_ball ball[12];
+	for (int i = 0; i < 12; i++)
+		ball[i] = (struct scene_ball){{-0.8 + 0.14 * i, -0.35 + 0.06 * i + 0.1 * (i % 2)}, {20, 20, 210}};
+	scene_paint(&camera, &table, ball, 12, 3, &r, &image);
+	ck_assert(scan_frame(&scan, &image.image));
+	for (int pass = 0; pass < 2; pass++) {
+		seeds_find(&seeds, &scan, pass == 0 ? NULL : scan.changed);
+		for (int i = 0; i < 12; i++) {
+			vec2 px;
+			double near = 1e9;
+			camera_project(&camera, ball[i].pos, table.ball_radius, &px);
+			for (int k = 0; k < seeds.count; k++)
+				near = fmin(near, vec2_dist(seeds.seed[k].px, px));
+			ck_assert_double_lt(near, 2.5);
+		}
+		ck_assert_int_lt(seeds.count, 12 + 14);
+	}
+}
+END_TEST
+
+START_TEST(test_only_what_changed)
+{
+	struct random r = random_begin("scan_changes");
+	struct scene_ball ball = {{0.2, 0.1}, {20, 20, 210}};
+	scene_paint(&camera, &table, &ball, 1, 3, &r, &image);
+	ck_assert(scan_frame(&scan, &image.image));
+	scene_paint(&camera, &table, &ball, 1, 3, &r, &image);
+	ck_assert_int_eq(scan_changes(&scan, &image.image), 0);
+	vec2 before = ball.pos;
+	ball.pos.x += 0.003;
+	scene_paint(&camera, &table, &ball, 1, 3, &r, &image);
+	int changed = scan_changes(&scan, &image.image);
+	ck_assert_int_gt(changed, 0);
+	ck_assert_int_lt(changed, 40);
+	ball.pos.x += 0.3;
+	scene_paint(&camera, &table, &ball, 1, 3, &r, &image);
+	scan_changes(&scan, &image.image);
+	scan_update(&scan);
+	ck_assert_int_eq(marked_around(before), 0);
+	ck_assert_int_gt(marked_around(ball.pos), 100);
+}
+END_TEST
+
+START_TEST(test_no_cloth_no_scan)
+{
+	static const int grey[] = {0, 10, 255};
+	ck_assert_int_eq(image_buffer_reserve(&image, 1280, 720), 0);
+	for (int i = 0; i < 3; i++) {
+		memset(image.image.data, grey[i], 1280 * 720 * 3);
+		ck_assert(!scan_frame(&scan, &image.image));
+	}
+}
+END_TEST
+
+START_TEST(test_places_that_are_none)
+{
+	struct camera away = camera;
+	away.pose.t[0] += 5;
+	ck_assert(!scan_place(&scan, &away, &table));
+	away = camera;
+	away.pose.t[2] = -1;
+	ck_assert(!scan_place(&scan, &away, &table));
+	/* Far too high: balls of a pixel. */
+	away = camera;
+	away.pose.t[2] += 20;
+	ck_assert(!scan_place(&scan, &away, &table));
+	/* Any size of frame fits into the same memory. */
+	for (int width = 640; width <= 7680; width *= 2) {
+		struct camera other = camera;
+		ck_assert(camera_scale(&camera.in, width, width * 9 / 16, &other.in));
+		ck_assert(scan_place(&scan, &other, &table));
+		ck_assert_int_le(scan.width * scan.height, scan.capacity);
+	}
+}
+END_TEST
+
+Suite *test_suite(void)
+{
+	Suite *suite = suite_create("scan");
+	TCase *tc = tcase_create("scan");
+	tcase_add_checked_fixture(tc, setup, teardown);
+	tcase_add_test(tc, test_light_and_shade_are_cloth_balls_are_not);
+	tcase_add_test(tc, test_seeds_lie_on_balls);
+	tcase_add_test(tc, test_only_what_changed);
+	tcase_add_test(tc, test_no_cloth_no_scan);
+	tcase_add_test(tc, test_places_that_are_none);
+	tcase_set_timeout(tc, 60);
+	suite_add_tcase(suite, tc);
+	return suite;
+}
