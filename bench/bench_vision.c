@@ -1,5 +1,6 @@
 /* Speed of the vision beside the old way's, circle Hough, on the same frames in the same run; and error against truth.
  */
+#include <assert.h>
 #include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
@@ -14,6 +15,7 @@
 
 static const double mm = 1000, FOUND = 0.015, ms = 1000;
 enum { FRAMES = 40, BALLS = 22, HOUGH_MAX = 200 };
+static_assert((int)HOUGH_MAX >= (int)SEED_MAX, "add_result takes either");
 
 struct way {
 	struct numbers ms, error;
@@ -30,7 +32,7 @@ struct bench {
 	struct calibration calibration;
 	struct detector detector;
 	struct vision *stream;
-	struct way cold, tracked, hough;
+	struct way votes, coarse, cold, tracked, hough;
 	struct numbers hough_alone, markers, markers_near, photo_cold, photo_hough;
 };
 
@@ -76,6 +78,34 @@ static void run_cold(struct bench *b, const struct camera *camera)
 	for (int i = 0; i < count; i++)
 		pos[i] = b->detector.candidate[i].fit.pos;
 	add_result(b, &b->cold, pos, count, after - before);
+}
+
+/* Cheaper: votes only; votes and half the samples of a fit that knows no neighbours. */
+static void run_cheaper(struct bench *b, const struct camera *camera)
+{
+	vec2 pos[SEED_MAX];
+	struct detector *d = &b->detector;
+	double radius = b->config.table.ball_radius, before = eval_seconds();
+	int count = 0, fitted = 0;
+	if (!detector_place(d, camera) || !scan_frame(&d->scan, &b->image.image))
+		return;
+	seeds_find(&d->seeds, &d->scan, d->scan.changed);
+	for (int i = 0; i < d->seeds.count; i++)
+		if (camera_unproject(camera, d->seeds.seed[i].px, radius, &pos[count]) &&
+		    detect_possible(d->table, pos[count]))
+			count++;
+	double after = eval_seconds();
+	add_result(b, &b->votes, pos, count, after - before);
+	struct fit_view view = {.frame = &b->image.image, .camera = camera, .radius = radius, .coarse = true};
+	for (int i = 0; i < count; i++) {
+		struct fit fit = {.pos = pos[i], .scale = 1, .expected_scale = 1, .scale_spread = 0.02};
+		vec2 px;
+		camera_project(camera, pos[i], 0, &px);
+		scan_cloth_at(&d->scan, px, fit.cloth);
+		if (fit_refine(&view, &fit, 2) && fit.support > 0.5)
+			pos[fitted++] = fit.pos;
+	}
+	add_result(b, &b->coarse, pos, fitted, eval_seconds() - before);
 }
 
 static void run_tracked(struct bench *b, int frame)
@@ -196,6 +226,8 @@ static void write_table(struct bench *b, const char *build)
 		return;
 	}
 	fprintf(file, "way,ms,median_mm\ncircle Hough,%.3f,%.3f\n", median(&b->hough.ms), median(&b->hough.error));
+	fprintf(file, "votes only,%.3f,%.3f\n", median(&b->votes.ms), median(&b->votes.error));
+	fprintf(file, "coarse fit,%.3f,%.3f\n", median(&b->coarse.ms), median(&b->coarse.error));
 	fprintf(file, "cold,%.3f,%.3f\n", median(&b->cold.ms), median(&b->cold.error));
 	fprintf(file, "cold with marker search,%.3f,%.3f\n", median(&b->cold.ms) + median(&b->markers),
 		median(&b->cold.error));
@@ -219,12 +251,15 @@ int main(int argc, char **argv)
 		b.ball[0].pos.x += 0.5 / 30;
 		table_camera_render(b.camera, b.ball, BALLS, (uint64_t)f, &b.image.image);
 		run_cold(&b, camera);
+		run_cheaper(&b, camera);
 		run_tracked(&b, f);
 		run_hough(&b, camera);
 		run_markers(&b);
 	}
 	struct report *report = report_open(argv[1], "bench.json");
 	report_way(report, "cold", &b.cold, 10);
+	report_way(report, "votes_only", &b.votes, NAN);
+	report_way(report, "coarse_fit", &b.coarse, NAN);
 	report_way(report, "tracked", &b.tracked, 3);
 	report_way(report, "hough", &b.hough, NAN);
 	report_number(report, "vision.hough_circles_alone_ms", median(&b.hough_alone), "ms");

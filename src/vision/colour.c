@@ -44,13 +44,11 @@ static void gather(const struct image *frame, const struct outline *o, struct pi
 		}
 }
 
-/* The value that a share of them lies below. */
-static double quantile(const uint8_t *value, int count, double share)
+/* The value that a share of them lies below; hist counts them by value. */
+static double quantile(const uint16_t hist[256], int count, double share)
 {
-	int hist[256] = {0}, sum = 0, v = 0;
-	for (int i = 0; i < count; i++)
-		hist[value[i]]++;
-	for (sum = hist[0]; sum <= share * count && v < 255;)
+	int sum = hist[0], v = 0;
+	while (sum <= share * count && v < 255)
 		sum += hist[++v];
 	/* Within the bin: whole levels would make a step of the logarithm. */
 	double before = sum - hist[v];
@@ -66,8 +64,11 @@ struct colour_feature colour_measure(const struct image *frame, const struct out
 		return f;
 	double median[3], light[3];
 	for (int c = 0; c < 3; c++) {
-		median[c] = fmax(0, quantile(px.value[c], px.count, 0.5));
-		light[c] = fmax(0, quantile(px.value[c], px.count, 0.75));
+		uint16_t hist[256] = {0};
+		for (int i = 0; i < px.count; i++)
+			hist[px.value[c][i]]++;
+		median[c] = fmax(0, quantile(hist, px.count, 0.5));
+		light[c] = fmax(0, quantile(hist, px.count, 0.75));
 		f.v[c] = log((median[c] + FLOOR) / (cloth[c] + FLOOR));
 	}
 	double dim = 20;

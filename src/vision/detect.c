@@ -135,6 +135,12 @@ static void add(struct detector *d, const struct candidate *c)
 		d->candidate[d->count++] = *c;
 }
 
+static void look_at(const struct detector *d, const struct image *frame, struct candidate *c)
+{
+	scan_cloth_at(&d->scan, c->fit.outline.centre, c->fit.cloth);
+	c->look = colour_measure(frame, &c->fit.outline, c->fit.cloth);
+}
+
 /* A ball that is known lies there: no need to find it again. */
 static bool is_known(const struct detector *d, vec2 pos)
 {
@@ -161,6 +167,7 @@ static void try_place(struct detector *d, const struct fit_view *view, vec2 px, 
 		refuse(d, &c, REFUSED_PLACE);
 	else {
 		look_around(d, &c, false);
+		look_at(d, view->frame, &c);
 		add(d, &c);
 	}
 }
@@ -279,27 +286,17 @@ static void find_alone(struct detector *d)
 }
 
 /* Fits all again, each knowing its neighbours. Those without any need it only once. */
-static void fit_together(struct detector *d, struct fit_view *view, int round)
+static void fit_together(struct detector *d, struct fit_view *view)
 {
 	struct fit other[DETECT_MAX];
 	know_neighbours(d, view, other);
 	for (int i = 0; i < d->count; i++) {
 		struct candidate *c = &d->candidate[i];
-		if (!c->fixed && (round == 0 || !c->alone) && !fit_refine(view, &c->fit, c->alone ? 1 : 2))
+		c->judged = c->judged && c->alone;
+		if (!c->fixed && !c->judged && !fit_refine(view, &c->fit, c->alone ? 1 : 2))
 			c->refusal = REFUSED_FIT;
 	}
 	view->other_count = 0;
-}
-
-static void look(struct detector *d, const struct image *frame)
-{
-	for (int i = 0; i < d->count; i++) {
-		struct candidate *c = &d->candidate[i];
-		if (c->fixed)
-			continue;
-		scan_cloth_at(&d->scan, c->fit.outline.centre, c->fit.cloth);
-		c->look = colour_measure(frame, &c->fit.outline, c->fit.cloth);
-	}
 }
 
 static void drop_refused(struct detector *d)
@@ -361,12 +358,13 @@ static void judge_all(struct detector *d, const struct image *frame, double reli
 {
 	for (int i = 0; i < d->count; i++) {
 		struct candidate *c = &d->candidate[i];
-		if (c->fixed)
+		if (c->fixed || c->judged)
 			continue;
 		look_around(d, c, true);
-		c->look = colour_measure(frame, &c->fit.outline, c->fit.cloth);
-		c->refusal = judge(d, c, relief);
+		look_at(d, frame, c);
+		c->refusal = judge(d, c, c->alone ? 0 : relief);
 		c->confidence = c->fit.support * c->cover;
+		c->judged = c->alone;
 	}
 	drop_refused(d);
 }
@@ -382,10 +380,9 @@ static void settle(struct detector *d, struct fit_view *view)
 	for (int round = 0; round < ROUNDS; round++) {
 		if (round > 0)
 			push_apart(d, 4);
-		look(d, view->frame);
 		expect_scales(d);
 		find_alone(d);
-		fit_together(d, view, round);
+		fit_together(d, view);
 		refuse_overlaps(d);
 		drop_refused(d);
 		/* What is no ball must neither hide nor push one; in the first round rims are still badly known. */
@@ -393,7 +390,6 @@ static void settle(struct detector *d, struct fit_view *view)
 		if (round + 1 < ROUNDS)
 			try_packed(d, view);
 	}
-	look(d, view->frame);
 	push_apart(d, 20);
 	for (int i = 0; i < d->count; i++) {
 		struct fit *fit = &d->candidate[i].fit;
@@ -428,7 +424,7 @@ bool detector_follow(struct detector *d, const struct image *frame, const struct
 	struct candidate c = *known;
 	struct fit other[DETECT_MAX];
 	struct fit_view view = view_of(d, frame, camera);
-	c.fixed = false;
+	c.fixed = c.judged = false;
 	c.refusal = REFUSED_NOT;
 	c.tag = tag;
 	c.fit.pos = pos;

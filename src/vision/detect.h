@@ -19,9 +19,10 @@ struct candidate {
 	double ring;	   /* share just outside of the rim that is not cloth, neighbours left out */
 	double confidence; /* 0..1 */
 	enum refusal refusal;
-	bool fixed; /* known from before and unchanged: neither fitted nor judged again */
-	bool alone; /* no neighbour near enough to hide any of its rim */
-	int tag;    /* the caller's, -1 for what was found anew */
+	bool fixed;  /* known from before and unchanged: neither fitted nor judged again */
+	bool alone;  /* no neighbour near enough to hide any of its rim */
+	bool judged; /* fitted and judged while alone: done unless a neighbour turns up */
+	int tag;     /* the caller's, -1 for what was found anew */
 };
 
 struct detector {
