@@ -200,6 +200,7 @@ static void add_keyframes(billiard_plan_t *out, billiard_plan_shot_t *shot, cons
 		if (trace->start[ball].phase == BALL_POTTED)
 			continue;
 		if (!add_ball(out, trace, ball)) {
+			memset(&out->keyframes[first], 0, (size_t)(out->keyframe_count - first) * sizeof out->keyframes[0]);
 			out->keyframe_count = first;
 			return;
 		}
@@ -216,6 +217,9 @@ void plan_message_fill(billiard_plan_t *out, const struct plan_result *result, c
 	out->sims = (int64_t)result->sims;
 	out->entry_count = result->plan_count < PLAN_MESSAGE_ENTRIES ? result->plan_count : PLAN_MESSAGE_ENTRIES;
 	out->keyframe_count = 0;
+	/* Nothing of a former plan stays behind the counts: the same plans make the same message, bit for bit. */
+	memset(out->entries, 0, sizeof out->entries);
+	memset(out->keyframes, 0, sizeof out->keyframes);
 	struct trace trace;
 	for (int i = 0; i < out->entry_count; i++) {
 		const struct plan *plan = &result->plan[i];

@@ -9,8 +9,8 @@
 
 #include "search/crew.h"
 
-/* Of a live budget, for those who rank by success. */
-static const double RANKING_SHARE = 0.2;
+/* Of a live budget, for those who rank by success, and for those who only want to know the tolerance of a few plans. */
+static const double RANKING_SHARE = 0.2, TOLERANCE_SHARE = 0.05;
 
 struct planner_def planner_def_default(void)
 {
@@ -156,7 +156,11 @@ static bool run_batches(struct planner *planner, int limit, plan_progress_fn *pr
 static void search(struct planner *planner, plan_progress_fn *progress, void *context, struct plan_result *result)
 {
 	double budget = planner->request->budget.seconds, begin = budget > 0 ? planner->def.now(planner->def.now_context) : 0;
-	double share = planner->def.profile.rank_by_success ? 1 - RANKING_SHARE : 1;
+	double share = 1;
+	if (planner->def.profile.rank_by_success)
+		share -= RANKING_SHARE;
+	else if (planner->request->tolerances > 0)
+		share -= TOLERANCE_SHARE;
 	planner->deadline = budget > 0 ? begin + share * budget : INFINITY;
 	search_begin(planner);
 	/* An easy question is answered before any worker is woken. */

@@ -19,6 +19,8 @@ static bool still_falls(struct trial *trial, double off)
 {
 	struct rules_outcome outcome;
 	const struct planner *planner = trial->planner;
+	if (search_is_over(planner))
+		return false;
 	trial->record.shot = trial->exact;
 	if (trial->speed)
 		trial->record.shot.speed *= 1 + off;
@@ -71,6 +73,8 @@ void tolerance_find(const struct planner *planner, const struct state *state, st
 	double left = reach(&trial, 1, 0.0005, 0.1), right = reach(&trial, -1, 0.0005, 0.1);
 	trial.speed = true;
 	double faster = reach(&trial, 1, 0.01, 0.5), slower = reach(&trial, -1, 0.01, 0.5);
+	if (search_is_over(planner))
+		return;	/* what was found is cut short: it stays unknown */
 	record->tolerance_angle = fmin(left, right);
 	record->tolerance_speed = fmin(faster, slower);
 	record->success = within(right, left, profile->sigma_angle) * within(slower, faster, profile->sigma_speed);
