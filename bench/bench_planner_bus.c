@@ -123,6 +123,23 @@ static void bench_budget(struct report *report, const char *scheme)
 	number(report, scheme, "over_budget_worst", quantile(over, budgets, 1), "ms");
 }
 
+/* CPU time of the manager in searches of a second, its messages included. */
+static void bench_manager(struct report *report, const char *scheme)
+{
+	for (int n = 0; n < 8 / part; n++) {
+		fill_endless(n);
+		client.request.budget_s = 1;
+		client_ask(&client);
+		wait_final();
+	}
+	client_wait(&client, 0.1);
+	for (double end = process_seconds(NULL) + 1.5; process_seconds(NULL) < end;) {	/* the next STATUS */
+		poll(NULL, 0, 100);
+		client_wait(&client, 0);
+	}
+	number(report, scheme, "manager_on_bus", client_metric(&client, "manager"), "%");
+}
+
 static void bench_cancel(struct report *report, const char *scheme)
 {
 	static double took[CANCELS];
@@ -221,6 +238,8 @@ START_TEST(bench)
 	struct report *report = report_open(dirname(dirname(self)), "bench.json");
 	for (int i = 0; i < 4; i++) {
 		client_begin(&client, &(struct planner_setup){schemes[i], 2, NULL});
+		if (i > 0)	/* in batches it works along */
+			bench_manager(report, schemes[i]);
 		bench_latency(report, schemes[i], 0);
 		bench_budget(report, schemes[i]);
 		bench_cancel(report, schemes[i]);

@@ -91,6 +91,7 @@ static void describe(void *context, struct process *process)
 	process_metric(process, "simulations", "1", (double)f.sims);
 	process_metric(process, "rate", "1/s", rate(p, &f));
 	process_metric(process, "depth", "1", f.search.depth);
+	process_metric(process, "manager", "%", f.searched > 0 ? 100 * f.manager / f.searched : 0);
 	process_metric(process, "queue", "1", f.search.open);
 	process_metric(process, "busy", "1", f.search.busy);
 	process_metric(process, "windows", "1", (double)f.search.windows_held);
