@@ -1,5 +1,5 @@
-/* What the schemes of sharing work are worth: nodes a second at one worker and two, time to exhaustion, waiting, the manager's part, and the
- * windows' period and length against all that. Prints tables, writes BUILD/planner.csv. */
+/* What the schemes of sharing work are worth: nodes a second at one worker and two, time to exhaustion, waiting, the
+ * manager's part, and the windows' period and length against all that. Prints tables, writes BUILD/planner.csv. */
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
@@ -35,11 +35,11 @@ struct way {
 
 /* What a search was like. */
 struct run {
-	double wall, cpu, manager;	/* s; CPU of all threads; of the one that called */
-	double work;			/* expansions and simulations */
-	double waited;			/* s, all workers */
-	double first;			/* s to the first proposal */
-	double best;			/* cost */
+	double wall, cpu, manager; /* s; CPU of all threads; of the one that called */
+	double work;		   /* expansions and simulations */
+	double waited;		   /* s, all workers */
+	double first;		   /* s to the first proposal */
+	double best;		   /* cost */
 	bool exhausted;
 	struct plan_figures figures;
 };
@@ -118,21 +118,21 @@ static struct run best_of(const struct table *table, const struct way *way, cons
 
 static void print_head(const char *title)
 {
-	printf("\n%s\n%-8s %-9s %8s %8s %10s %10s %8s %8s %9s %9s %8s\n", title, "model", "scheme", "workers", "ms", "work/s", "work/cpu s", "waited",
-	       "manager", "first ms", "on dem.", "best");
+	printf("\n%s\n%-8s %-9s %8s %8s %10s %10s %8s %8s %9s %9s %8s\n", title, "model", "scheme", "workers", "ms",
+	       "work/s", "work/cpu s", "waited", "manager", "first ms", "on dem.", "best");
 }
 
 static void print_run(const struct way *way, const struct run *run)
 {
-	printf("%-8s %-9s %8d %8.1f %10.0f %10.0f %7.2f%% %7.2f%% %9.3f %9llu %8.4f%s\n", way->model, scheme_name(way->scheme), way->workers,
-	       1e3 * run->wall, run->work / run->wall, run->work / run->cpu, 100 * run->waited / (run->wall * way->workers),
-	       100 * run->manager / run->wall, 1e3 * run->first, (unsigned long long)run->figures.on_demand, run->best,
-	       run->exhausted ? "" : "  cut");
+	printf("%-8s %-9s %8d %8.1f %10.0f %10.0f %7.2f%% %7.2f%% %9.3f %9llu %8.4f%s\n", way->model,
+	       scheme_name(way->scheme), way->workers, 1e3 * run->wall, run->work / run->wall, run->work / run->cpu,
+	       100 * run->waited / (run->wall * way->workers), 100 * run->manager / run->wall, 1e3 * run->first,
+	       (unsigned long long)run->figures.on_demand, run->best, run->exhausted ? "" : "  cut");
 	fflush(stdout);
 }
 
-/* Ratio of two workers to one: in work a second as measured, and as it would be with two cores of one's own: work for each second of CPU time,
- * less the time in which a worker had nothing to do. */
+/* Ratio of two workers to one: in work a second as measured, and as it would be with two cores of one's own: work for
+ * each second of CPU time, less the time in which a worker had nothing to do. */
 static void report_ratio(struct report *report, const struct way *way, const struct run *one, const struct run *two)
 {
 	char name[80];
@@ -227,12 +227,13 @@ static void measure_windows(FILE *csv, const struct table *table, const struct w
 	struct run run = best_of(table, way, &endless), whole = quickest_of(table, way, &exhausted);
 	const struct plan_figures *f = &run.figures;
 	double waited = whole.waited / (whole.wall * way->workers);
-	printf("%-8s %8.3g %8.3g %10.0f %10.0f %8llu %8llu %8llu %8llu %12.2f %8.2f%% %8llu\n", scheme_name(way->scheme), 1e3 * way->period,
-	       1e3 * way->window, run.work / run.wall, run.work / run.cpu, (unsigned long long)f->windows_held,
-	       (unsigned long long)f->windows_missed, (unsigned long long)f->windows_blocked, (unsigned long long)f->windows_late,
-	       1e3 * whole.wall, 100 * waited, (unsigned long long)whole.figures.on_demand);
-	fprintf(csv, "%s,%g,%g,%g,%g,%g,%g,%g\n", scheme_name(way->scheme), share, 1e3 * way->period, 1e3 * way->window, run.work / run.wall,
-		run.work / run.cpu, 1e3 * whole.wall, 100 * waited);
+	printf("%-8s %8.3g %8.3g %10.0f %10.0f %8llu %8llu %8llu %8llu %12.2f %8.2f%% %8llu\n",
+	       scheme_name(way->scheme), 1e3 * way->period, 1e3 * way->window, run.work / run.wall, run.work / run.cpu,
+	       (unsigned long long)f->windows_held, (unsigned long long)f->windows_missed,
+	       (unsigned long long)f->windows_blocked, (unsigned long long)f->windows_late, 1e3 * whole.wall,
+	       100 * waited, (unsigned long long)whole.figures.on_demand);
+	fprintf(csv, "%s,%g,%g,%g,%g,%g,%g,%g\n", scheme_name(way->scheme), share, 1e3 * way->period, 1e3 * way->window,
+		run.work / run.wall, run.work / run.cpu, 1e3 * whole.wall, 100 * waited);
 	fflush(stdout);
 }
 
@@ -240,12 +241,15 @@ static void measure_windows(FILE *csv, const struct table *table, const struct w
 static void bench_windows(FILE *csv, const struct table *table)
 {
 	static const double period[] = {0.002, 0.005, 0.01, 0.02, 0.05, 0.1, 0.2, 0.5}, share[] = {0.04, 0.33};
-	printf("\nwindows: k and n, two workers; the endless search of %g s, then the one to exhaustion\n%-8s %8s %8s %10s %10s %8s %8s %8s %8s %12s %9s %8s\n",
-	       search_seconds, "scheme", "k ms", "n ms", "work/s", "work/cpu s", "held", "missed", "blocked", "late", "exhausted ms", "waited",
-	       "on dem.");
+	printf("\nwindows: k and n, two workers; the endless search of %g s, then the one to exhaustion\n%-8s %8s %8s "
+	       "%10s %10s %8s %8s %8s %8s %12s %9s %8s\n",
+	       search_seconds, "scheme", "k ms", "n ms", "work/s", "work/cpu s", "held", "missed", "blocked", "late",
+	       "exhausted ms", "waited", "on dem.");
 	for (int n = 0; n < 2; n++)
 		for (size_t k = 0; k < sizeof period / sizeof *period; k++)
-			measure_windows(csv, table, &(struct way){"thesis", SCHEME_WINDOWS, 2, period[k], share[n] * period[k]}, share[n]);
+			measure_windows(csv, table,
+					&(struct way){"thesis", SCHEME_WINDOWS, 2, period[k], share[n] * period[k]},
+					share[n]);
 	for (int s = 0; s < SCHEME_COUNT; s++)
 		if (s != SCHEME_WINDOWS)
 			measure_windows(csv, table, &(struct way){"thesis", (enum plan_scheme)s, 2, 0.1, 0.004}, 0);

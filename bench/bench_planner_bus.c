@@ -1,5 +1,6 @@
-/* The planner as its askers see it, on a bus of its own: from request to first and final plan, cancelling, ending, starting again, idling,
- * floods, memory. BENCH_QUICK=1: a few seconds of it, for a machine that cannot be had alone for longer. */
+/* The planner as its askers see it, on a bus of its own: from request to first and final plan, cancelling, ending,
+ * starting again, idling, floods, memory. BENCH_QUICK=1: a few seconds of it, for a machine that cannot be had alone
+ * for longer. */
 #include <check.h>
 #include <libgen.h>
 #include <math.h>
@@ -17,7 +18,7 @@
 #include "search_scenes.h"
 
 enum { POSITIONS = 240, CANCELS = 60, BUDGETS = 40, REQUESTS = 10000, ENDS = 8, FLOOD_SECONDS = 10, FLOOD_RATE = 500 };
-static int part = 1;	/* of those numbers: every so many */
+static int part = 1; /* of those numbers: every so many */
 
 static struct planner_client client;
 static struct config config;
@@ -133,7 +134,7 @@ static void bench_manager(struct report *report, const char *scheme)
 		wait_final();
 	}
 	client_wait(&client, 0.1);
-	for (double end = process_seconds(NULL) + 1.5; process_seconds(NULL) < end;) {	/* the next STATUS */
+	for (double end = process_seconds(NULL) + 1.5; process_seconds(NULL) < end;) { /* the next STATUS */
 		poll(NULL, 0, 100);
 		client_wait(&client, 0);
 	}
@@ -238,7 +239,7 @@ START_TEST(bench)
 	struct report *report = report_open(dirname(dirname(self)), "bench.json");
 	for (int i = 0; i < 4; i++) {
 		client_begin(&client, &(struct planner_setup){schemes[i], 2, NULL});
-		if (i > 0)	/* in batches it works along */
+		if (i > 0) /* in batches it works along */
 			bench_manager(report, schemes[i]);
 		bench_latency(report, schemes[i], 0);
 		bench_budget(report, schemes[i]);

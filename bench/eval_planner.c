@@ -1,6 +1,6 @@
-/* Soak of the planner on a bus of its own: random positions and limits, cancels, replaced and repeated requests, floods, bytes that are no
- * messages, SIGKILL, SIGTERM, SIGSTOP. EVAL_SOAK seconds (600). Every request that is not replaced must be answered, in time, by a plan that
- * holds; memory must not grow. */
+/* Soak of the planner on a bus of its own: random positions and limits, cancels, replaced and repeated requests,
+ * floods, bytes that are no messages, SIGKILL, SIGTERM, SIGSTOP. EVAL_SOAK seconds (600). Every request that is not
+ * replaced must be answered, in time, by a plan that holds; memory must not grow. */
 #include <check.h>
 #include <libgen.h>
 #include <math.h>
@@ -66,7 +66,7 @@ static void no_answer(void)
 
 static void expect_answer(int wanted)
 {
-	double slack = 1;	/* s; other load on the machine */
+	double slack = 1; /* s; other load on the machine */
 	if (!client_wait(&client, client.request.budget_s + 20)) {
 		no_answer();
 		return;
@@ -74,10 +74,12 @@ static void expect_answer(int wanted)
 	double over = client.last - client.sent - fmax(client.request.budget_s, 0);
 	if (over > 0.1) {
 		const billiard_plan_request_t *r = &client.request;
-		printf("request %lld: %.0f ms over its budget of %.0f; %d balls, depth %d, rails %d, chains %d, speeds %d, plans %d, on %d, in hand %d, "
+		printf("request %lld: %.0f ms over its budget of %.0f; %d balls, depth %d, rails %d, chains %d, speeds "
+		       "%d, plans %d, on %d, in hand %d, "
 		       "nodes %lld; %.0f ms by its own account\n",
-		       (long long)client.id, 1e3 * over, 1e3 * r->budget_s, r->ball_count, r->depth, r->rails, r->max_balls, r->speeds, r->plans,
-		       r->on, r->in_hand, (long long)r->budget_nodes, 1e3 * client.plan.seconds);
+		       (long long)client.id, 1e3 * over, 1e3 * r->budget_s, r->ball_count, r->depth, r->rails,
+		       r->max_balls, r->speeds, r->plans, r->on, r->in_hand, (long long)r->budget_nodes,
+		       1e3 * client.plan.seconds);
 		fflush(stdout);
 	}
 	seen.late += over > slack;
@@ -107,7 +109,7 @@ static void cancelled(struct random *random)
 	client_wait_first(&client, 0.001 * pick(random, 50));
 	client_cancel(&client, client.id);
 	if (!client_wait(&client, 20))
-		no_answer();	/* whether it was cancelled in time depends */
+		no_answer(); /* whether it was cancelled in time depends */
 }
 
 static void replaced(struct random *random)
@@ -204,7 +206,8 @@ static void repeated(struct random *random)
 
 START_TEST(soak)
 {
-	static void (*const act[])(struct random *random) = {plain, plain, plain, plain, cancelled, replaced, refused, garbage, repeated, stopped};
+	static void (*const act[])(struct random * random) = {plain,	plain,	 plain,	  plain,    cancelled,
+							      replaced, refused, garbage, repeated, stopped};
 	const char *text = getenv("EVAL_SOAK");
 	double seconds = text ? strtod(text, NULL) : 600, end = process_seconds(NULL) + seconds;
 	char self[4096], err[640];

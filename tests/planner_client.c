@@ -46,11 +46,14 @@ static void write_conf(const struct planner_setup *setup)
 	snprintf(conf, sizeof conf, "%s", fixture_file("table.conf"));
 	int n = snprintf(edits, sizeof edits, "-e 's#\"colours.json\"#\"%s/config/colours.json\"#'", cwd);
 	if (setup->scheme)
-		n += snprintf(edits + n, sizeof edits - (size_t)n, " -e 's/scheme = \"[a-z]*\"/scheme = \"%s\"/'", setup->scheme);
+		n += snprintf(edits + n, sizeof edits - (size_t)n, " -e 's/scheme = \"[a-z]*\"/scheme = \"%s\"/'",
+			      setup->scheme);
 	if (setup->workers)
-		n += snprintf(edits + n, sizeof edits - (size_t)n, " -e 's/workers = [0-9]*/workers = %d/'", setup->workers);
+		n += snprintf(edits + n, sizeof edits - (size_t)n, " -e 's/workers = [0-9]*/workers = %d/'",
+			      setup->workers);
 	if (setup->model)
-		n += snprintf(edits + n, sizeof edits - (size_t)n, " -e 's/^model = \"[a-z-]*\"/model = \"%s\"/'", setup->model);
+		n += snprintf(edits + n, sizeof edits - (size_t)n, " -e 's/^model = \"[a-z-]*\"/model = \"%s\"/'",
+			      setup->model);
 	snprintf(command, sizeof command, "sed %s config/thesis-table.conf >%s", edits, conf);
 	ck_assert_int_eq(system(command), 0);
 }
@@ -177,7 +180,8 @@ double client_cpu(const struct planner_client *client)
 {
 	long user = 0, system = 0;
 	FILE *f = proc(client, "stat");
-	ck_assert_int_eq(fscanf(f, "%*d (%*[^)]) %*c %*d %*d %*d %*d %*d %*u %*u %*u %*u %*u %ld %ld", &user, &system), 2);
+	ck_assert_int_eq(fscanf(f, "%*d (%*[^)]) %*c %*d %*d %*d %*d %*d %*u %*u %*u %*u %*u %ld %ld", &user, &system),
+			 2);
 	fclose(f);
 	return (double)(user + system) / (double)sysconf(_SC_CLK_TCK);
 }

@@ -9,28 +9,28 @@
 
 /* How the planner is to be configured. */
 struct planner_setup {
-	const char *scheme;	/* NULL: as shipped */
-	int workers;		/* 0: as shipped */
-	const char *model;	/* NULL: as shipped */
+	const char *scheme; /* NULL: as shipped */
+	int workers;	    /* 0: as shipped */
+	const char *model;  /* NULL: as shipped */
 };
 
 /* What is known of the request asked last. Times are s, monotonic. */
 struct planner_client {
 	struct bus *bus;
 	pid_t pid;
-	int64_t id;			/* of that request; grows */
-	double sent, first, last;	/* request published; first and final plan received; 0: not yet */
-	int plans;			/* received for it */
-	int64_t finals, cancelled, refused, foreign;	/* of all requests; foreign: not for the one asked last */
+	int64_t id;				     /* of that request; grows */
+	double sent, first, last;		     /* request published; first and final plan received; 0: not yet */
+	int plans;				     /* received for it */
+	int64_t finals, cancelled, refused, foreign; /* of all requests; foreign: not for the one asked last */
 	billiard_plan_request_t request;
-	billiard_plan_t plan;		/* the newest for it */
-	billiard_plan_t other;		/* the newest for any other */
+	billiard_plan_t plan;  /* the newest for it */
+	billiard_plan_t other; /* the newest for any other */
 	billiard_status_t status;
 };
 
 /* A bus and a planner on it; waits until it answers. fixture_begin() comes before. */
 void client_begin(struct planner_client *client, const struct planner_setup *setup);
-void client_start(struct planner_client *client);	/* another process after the first has ended */
+void client_start(struct planner_client *client); /* another process after the first has ended */
 void client_end(struct planner_client *client);
 
 /* Fills client->request: those balls, one shot deep, direct, 10 plans, no budget. */
@@ -45,7 +45,8 @@ bool client_wait_first(struct planner_client *client, double seconds);
 /* Value of a metric in the newest STATUS, NAN when it is not there. */
 double client_metric(const struct planner_client *client, const char *name);
 
-/* KiB of memory taken, touched or not (what was taken at the start becomes resident only as searches need it); s of CPU time used so far. */
+/* KiB of memory taken, touched or not (what was taken at the start becomes resident only as searches need it); s of CPU
+ * time used so far. */
 long client_memory(const struct planner_client *client);
 double client_cpu(const struct planner_client *client);
 

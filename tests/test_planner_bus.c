@@ -11,7 +11,7 @@
 #include "search_scenes.h"
 
 static struct planner_client client;
-static struct config config;	/* too large for the stack */
+static struct config config; /* too large for the stack */
 
 static void begin(const char *scheme, int workers)
 {
@@ -59,7 +59,8 @@ START_TEST(first_then_better_then_final)
 	client_ask(&client);
 	ck_assert(client_wait_first(&client, 10));
 	ck_assert_int_eq(client.plan.sequence, 0);
-	ck_assert(!client.plan.is_final && client.plan.entry_count == 1 && client.plan.entries[0].shots[0].keyframe_count > 0);
+	ck_assert(!client.plan.is_final && client.plan.entry_count == 1 &&
+		  client.plan.entries[0].shots[0].keyframe_count > 0);
 	ck_assert(plan_message_check(&client.plan, &config.table));
 	double cost = client.plan.entries[0].cost;
 	int shots = client.plan.entries[0].shot_count;
@@ -87,8 +88,8 @@ static void search_here(billiard_plan_t *out)
 	planner_destroy(planner);
 }
 
-/* The final answer to a node budget, bit for bit but for when and after how many others it came: at any number of workers, in every scheme,
- * the same as in this process. */
+/* The final answer to a node budget, bit for bit but for when and after how many others it came: at any number of
+ * workers, in every scheme, the same as in this process. */
 START_TEST(node_budgets_repeat)
 {
 	static const struct {
@@ -133,7 +134,7 @@ START_TEST(newer_requests_replace_older_ones)
 	client_cancel(&client, client.id);
 	ck_assert(client_wait(&client, 10));
 	ck_assert_int_eq(client.plan.status, PLAN_MESSAGE_CANCELLED);
-	ck_assert_int_gt(client.plan.entry_count, 0);	/* the best so far */
+	ck_assert_int_gt(client.plan.entry_count, 0); /* the best so far */
 }
 END_TEST
 
@@ -177,7 +178,8 @@ START_TEST(bad_requests_get_a_reason)
 	/* bytes that are no request */
 	for (int size = 0; size < 40; size += 13) {
 		int64_t refused = client.refused;
-		bus_publish(client.bus, "PLAN_REQUEST", &bus_raw, &(struct raw_message){"this is not a request, not even nearly", size});
+		bus_publish(client.bus, "PLAN_REQUEST", &bus_raw,
+			    &(struct raw_message){"this is not a request, not even nearly", size});
 		for (int i = 0; i < 100 && client.refused == refused; i++)
 			client_wait(&client, 0), poll(NULL, 0, 20);
 		ck_assert_int_eq(client.refused, refused + 1);

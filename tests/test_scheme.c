@@ -21,7 +21,8 @@ static double seconds(void *context)
 }
 
 /* Short windows, so that these searches have many. */
-static struct planner *make(const struct table *table, const struct cost_profile *profile, enum plan_scheme scheme, int workers)
+static struct planner *make(const struct table *table, const struct cost_profile *profile, enum plan_scheme scheme,
+			    int workers)
 {
 	struct planner_def def = planner_def_default();
 	struct planner *planner = NULL;
@@ -40,8 +41,9 @@ static struct planner *make(const struct table *table, const struct cost_profile
 
 static bool same_shot(const struct plan_shot *a, const struct plan_shot *b)
 {
-	return a->hash == b->hash && a->cost == b->cost && memcmp(&a->shot, &b->shot, sizeof a->shot) == 0 && a->target == b->target &&
-	       a->pocket == b->pocket && memcmp(a->chain, b->chain, sizeof a->chain) == 0 && a->points == b->points;
+	return a->hash == b->hash && a->cost == b->cost && memcmp(&a->shot, &b->shot, sizeof a->shot) == 0 &&
+	       a->target == b->target && a->pocket == b->pocket && memcmp(a->chain, b->chain, sizeof a->chain) == 0 &&
+	       a->points == b->points;
 }
 
 static void check_same_list(const struct plan_result *a, const struct plan_result *b)
@@ -56,7 +58,8 @@ static void check_same_list(const struct plan_result *a, const struct plan_resul
 }
 
 /* One request in every scheme at 1, 2 and 8 workers against batches at one worker. */
-static void check_request(const struct table *table, const struct cost_profile *profile, const struct plan_request *request, bool exhausts)
+static void check_request(const struct table *table, const struct cost_profile *profile,
+			  const struct plan_request *request, bool exhausts)
 {
 	struct planner *plain = make(table, profile, SCHEME_BATCH, 1);
 	struct plan_result want = scene_run(plain, request);
@@ -69,7 +72,9 @@ static void check_request(const struct table *table, const struct cost_profile *
 			check_same_list(&want, &result);
 			if (!exhausts || request->plans == PLAN_MAX) {
 				ck_assert_uint_eq(result.nodes, want.nodes);
-				ck_assert_uint_eq(result.tried, want.tried);	/* not sims: when a contact is proposed meanwhile depends */
+				ck_assert_uint_eq(
+					result.tried,
+					want.tried); /* not sims: when a contact is proposed meanwhile depends */
 			}
 			planner_destroy(planner);
 		}
@@ -94,7 +99,7 @@ START_TEST(exhaustive_lists_are_equal)
 		request.tolerances = 1;
 		check_request(&table, NULL, &request, true);
 		request.depth = 2;
-		request.plans = 7;	/* full lists: what costs more is pruned, in whatever order it comes */
+		request.plans = 7; /* full lists: what costs more is pruned, in whatever order it comes */
 		check_request(&table, NULL, &request, true);
 	}
 }
@@ -206,7 +211,7 @@ static struct plan_request long_request(const struct table *table)
 
 static void *cancel_soon(void *planner)
 {
-	for (int i = 0; i < 20; i++) {	/* the first may come before the search begins */
+	for (int i = 0; i < 20; i++) { /* the first may come before the search begins */
 		nanosleep(&(struct timespec){0, 20 * 1000 * 1000}, NULL);
 		planner_cancel(planner);
 	}
@@ -267,7 +272,7 @@ START_TEST(overflow_is_told)
 	def.workers = 2;
 	def.now = seconds;
 	size_t little = 1, enough = 64u << 20;
-	while (enough - little > 4096) {	/* the least that is accepted, to some 30 nodes */
+	while (enough - little > 4096) { /* the least that is accepted, to some 30 nodes */
 		def.memory = little + (enough - little) / 2;
 		int rc = planner_create(&planner, &def);
 		*(rc == 0 ? &enough : &little) = def.memory;
@@ -307,11 +312,11 @@ START_TEST(bad_definitions)
 	struct planner_def def = planner_def_default();
 	def.table = &table;
 	def.scheme = SCHEME_WINDOWS;
-	ck_assert_int_eq(planner_create(&planner, &def), -EINVAL);	/* windows need a clock */
+	ck_assert_int_eq(planner_create(&planner, &def), -EINVAL); /* windows need a clock */
 	def.now = seconds;
 	ck_assert_int_eq(planner_create(&planner, &def), 0);
 	planner_destroy(planner);
-	def.sync_window = def.sync_period / 2 + 0.001;			/* one worker and the manager do not fit */
+	def.sync_window = def.sync_period / 2 + 0.001; /* one worker and the manager do not fit */
 	ck_assert_int_eq(planner_create(&planner, &def), -EINVAL);
 	def.sync_window = 0;
 	ck_assert_int_eq(planner_create(&planner, &def), -EINVAL);
@@ -343,7 +348,7 @@ Suite *test_suite(void)
 	tcase_add_test(tc, no_solution);
 	tcase_add_test(tc, node_budgets_repeat);
 	tcase_add_loop_test(tc, progress_and_figures, 0, SCHEME_COUNT);
-	tcase_add_loop_test(tc, cancelled_and_used_again, 0, SCHEME_COUNT *CREWS);
+	tcase_add_loop_test(tc, cancelled_and_used_again, 0, SCHEME_COUNT * CREWS);
 	tcase_add_loop_test(tc, live_budget, 0, SCHEME_COUNT);
 	tcase_add_loop_test(tc, overflow_is_told, 0, SCHEME_COUNT);
 	tcase_add_test(tc, no_memory_is_taken_by_searches);

@@ -12,8 +12,8 @@ struct planner_process {
 	struct config config;
 	struct planner_service *service;
 	billiard_plan_t answer;
-	int64_t malformed, ignored;	/* requests that could not be read; messages ignored before */
-	double work, work_time;		/* nodes and simulations at the last STATUS, when that was */
+	int64_t malformed, ignored; /* requests that could not be read; messages ignored before */
+	double work, work_time;	    /* nodes and simulations at the last STATUS, when that was */
 };
 
 static bool on_request(void *context, const void *message)
@@ -41,7 +41,8 @@ static int on_answers(sd_event_source *source, int fd, uint32_t events, void *co
 	while (planner_service_answer(p->service, &p->answer)) {
 		bus_publish(p->process.bus, "PLAN", &bus_plan, &p->answer);
 		if (p->answer.status == PLAN_MESSAGE_REFUSED)
-			process_error(&p->process, "request %lld refused: %.90s", (long long)p->answer.request_id, p->answer.reason);
+			process_error(&p->process, "request %lld refused: %.90s", (long long)p->answer.request_id,
+				      p->answer.reason);
 	}
 	return 0;
 }
@@ -114,7 +115,8 @@ static int setup(struct planner_process *p, const struct process_options *option
 	p->process.context = p;
 	if ((r = bus_subscribe(p->process.bus, "PLAN_REQUEST", &bus_plan_request, BUS_EACH, on_request, p)) < 0 ||
 	    (r = bus_subscribe(p->process.bus, "COMMAND", &bus_command, BUS_EACH, on_command, p)) < 0 ||
-	    (r = sd_event_add_io(p->process.event, NULL, planner_service_descriptor(p->service), EPOLLIN, on_answers, p)) < 0 ||
+	    (r = sd_event_add_io(p->process.event, NULL, planner_service_descriptor(p->service), EPOLLIN, on_answers,
+				 p)) < 0 ||
 	    (r = sd_event_add_post(p->process.event, NULL, on_turn, p)) < 0)
 		fprintf(stderr, "billiard-planner: %s\n", strerror(-r));
 	return r;

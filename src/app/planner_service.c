@@ -14,10 +14,10 @@
 #include "app/plan_message.h"
 #include "app/process.h"
 
-static const double IMPROVEMENT_PERIOD = 0.1;	/* s between improved answers at least */
-static const double OUTDATED = 2;		/* s after the last answer within which an older request is a late one */
-static const double ANSWER_TIME = 0.003;	/* s of a live budget that go into making and sending the final answer */
-static const double LEAST_TIME = 0.001;		/* s that a search gets in any case */
+static const double IMPROVEMENT_PERIOD = 0.1; /* s between improved answers at least */
+static const double OUTDATED = 2;	      /* s after the last answer within which an older request is a late one */
+static const double ANSWER_TIME = 0.003;      /* s of a live budget that go into making and sending the final answer */
+static const double LEAST_TIME = 0.001;	      /* s that a search gets in any case */
 static const char REPLACED[] = "replaced by a newer request or cancelled";
 
 /* Answers on their way to the loop. A request makes at most one final answer; improvements replace each other. */
@@ -31,26 +31,26 @@ static double thread_seconds(void)
 }
 
 struct planner_service {
-	const struct config *config;	/* borrowed */
-	struct planner *planner;	/* owned */
+	const struct config *config; /* borrowed */
+	struct planner *planner;     /* owned */
 	pthread_t thread;
 	bool thread_runs;
-	int descriptor;			/* eventfd: answers wait */
-	struct trace_entry *scratch;	/* owned, the search thread's */
-	billiard_plan_t draft;		/* the search thread's */
-	atomic_bool unwanted;		/* the running search is to end; reset when the next is taken */
+	int descriptor;		     /* eventfd: answers wait */
+	struct trace_entry *scratch; /* owned, the search thread's */
+	billiard_plan_t draft;	     /* the search thread's */
+	atomic_bool unwanted;	     /* the running search is to end; reset when the next is taken */
 
-	pthread_mutex_t lock;		/* of all below */
+	pthread_mutex_t lock; /* of all below */
 	pthread_cond_t wake;
 	bool stop;
 	bool has_request, busy;
-	int64_t present_id;		/* newest id taken */
+	int64_t present_id; /* newest id taken */
 	billiard_plan_request_t request;
-	double request_time;		/* s, monotonic */
+	double request_time; /* s, monotonic */
 	billiard_plan_t answer[ANSWER_MAX];
 	int answer_count;
-	billiard_plan_t last;		/* the last answer to present_id, for repeated requests; request_id 0: none yet */
-	double last_time;		/* s, monotonic, when it was given */
+	billiard_plan_t last; /* the last answer to present_id, for repeated requests; request_id 0: none yet */
+	double last_time;     /* s, monotonic, when it was given */
 	struct planner_service_figures figures;
 };
 
@@ -62,8 +62,8 @@ struct search {
 	double request_time, started, last_sent;
 };
 
-/* The search's clock. It is asked often, so this is where a search that nobody wants any more is ended: planner_cancel() alone would be
- * lost when it comes just before the search begins. */
+/* The search's clock. It is asked often, so this is where a search that nobody wants any more is ended:
+ * planner_cancel() alone would be lost when it comes just before the search begins. */
 static double search_clock(void *context)
 {
 	struct planner_service *service = context;
@@ -91,7 +91,7 @@ static void post(struct planner_service *service, const billiard_plan_t *plan)
 	service->answer_count = at + 1;
 	uint64_t one = 1;
 	if (write(service->descriptor, &one, sizeof one) < 0)
-		return;	/* the counter is full: the loop is awake anyway */
+		return; /* the counter is full: the loop is awake anyway */
 }
 
 static void send_plan(struct search *search, bool final)
@@ -153,7 +153,8 @@ static void run_search(struct planner_service *service, const billiard_plan_requ
 		service->figures.refused++;
 		pthread_mutex_unlock(&service->lock);
 	} else {
-		plan_message_fill(&service->draft, &result, &service->config->table, &service->config->model, service->scratch);
+		plan_message_fill(&service->draft, &result, &service->config->table, &service->config->model,
+				  service->scratch);
 		if (r == -ECANCELED) {
 			service->draft.status = PLAN_MESSAGE_CANCELLED;
 			snprintf(err, sizeof err, "%s", REPLACED);
@@ -210,7 +211,7 @@ static struct planner_def define(const struct config *config)
 	/* A window for each worker and one for the manager must fit into a period. */
 	double longest = def.sync_period / (def.workers + 1);
 	def.sync_window = planner->sync_window > 0 && planner->sync_window < longest ? planner->sync_window : longest;
-	def.progress_plans = 1;	/* each costs simulations for its keyframes: all of them come with the final answer */
+	def.progress_plans = 1; /* each costs simulations for its keyframes: all of them come with the final answer */
 	def.result_plans = PLAN_MESSAGE_ENTRIES;
 	return def;
 }
@@ -231,11 +232,14 @@ int planner_service_create(struct planner_service **out, const struct config *co
 	struct planner_def def = define(config);
 	def.now = search_clock;
 	def.now_context = service;
-	int r = service->descriptor < 0 ? -errno : !service->scratch ? -ENOMEM : planner_create(&service->planner, &def);
+	int r = service->descriptor < 0 ? -errno
+		: !service->scratch	? -ENOMEM
+					: planner_create(&service->planner, &def);
 	if (r == 0)
 		r = -pthread_create(&service->thread, NULL, search_thread, service);
 	if (r < 0) {
-		snprintf(err, err_size, "planner: %s", r == -EINVAL ? "memory_mib is too small for so many workers" : strerror(-r));
+		snprintf(err, err_size, "planner: %s",
+			 r == -EINVAL ? "memory_mib is too small for so many workers" : strerror(-r));
 		planner_service_destroy(service);
 		return r;
 	}
@@ -272,7 +276,8 @@ int planner_service_descriptor(const struct planner_service *service)
 }
 
 /* A request that is not worked on still ends with a final answer. Locked by the caller. */
-static void answer_without_search(struct planner_service *service, const billiard_plan_request_t *request, const char *reason)
+static void answer_without_search(struct planner_service *service, const billiard_plan_request_t *request,
+				  const char *reason)
 {
 	billiard_plan_t plan;
 	plan_message_begin(&plan, request);
@@ -349,9 +354,10 @@ bool planner_service_answer(struct planner_service *service, billiard_plan_t *ou
 	if (any) {
 		*out = service->answer[0];
 		service->answer_count--;
-		memmove(&service->answer[0], &service->answer[1], (size_t)service->answer_count * sizeof service->answer[0]);
+		memmove(&service->answer[0], &service->answer[1],
+			(size_t)service->answer_count * sizeof service->answer[0]);
 	} else if (read(service->descriptor, &drop, sizeof drop) < 0) {
-		any = false;	/* nothing to reset */
+		any = false; /* nothing to reset */
 	}
 	pthread_mutex_unlock(&service->lock);
 	return any;

@@ -13,7 +13,8 @@ static double now(const struct planner *planner)
 	return planner->def.now ? planner->def.now(planner->def.now_context) : 0;
 }
 
-/* ---- life ----------------------------------------------------------------------------------------------------------- */
+/* ---- life -----------------------------------------------------------------------------------------------------------
+ */
 
 static const struct share *share_of(enum plan_scheme scheme)
 {
@@ -70,7 +71,8 @@ void crew_destroy(struct crew *crew)
 	free(crew);
 }
 
-/* ---- for the schemes ------------------------------------------------------------------------------------------------ */
+/* ---- for the schemes ------------------------------------------------------------------------------------------------
+ */
 
 void crew_end(struct crew *crew)
 {
@@ -123,7 +125,8 @@ bool crew_pop(struct crew *crew, struct frontier *open, struct node *out)
 	return true;
 }
 
-/* ---- results -------------------------------------------------------------------------------------------------------- */
+/* ---- results --------------------------------------------------------------------------------------------------------
+ */
 
 static void note_limit(struct crew *crew)
 {
@@ -139,7 +142,8 @@ void crew_report(struct crew *crew, struct worker *worker)
 	for (int i = 0; i < worker->found_count; i++) {
 		const struct solution *solution = &worker->found[i];
 		struct solutions *list = &planner->solutions[worker->found_shots[i] - 1];
-		if (!solutions_add(list, solution) || list != best_solutions(planner) || solutions_at(list, 0)->key != solution->key)
+		if (!solutions_add(list, solution) || list != best_solutions(planner) ||
+		    solutions_at(list, 0)->key != solution->key)
 			continue;
 		crew->improved = true;
 		atomic_store_explicit(&crew->best, solution->cost, memory_order_relaxed);
@@ -172,10 +176,12 @@ static bool must_report(const struct crew *crew, const struct worker *worker)
 	return false;
 }
 
-/* ---- one node ------------------------------------------------------------------------------------------------------- */
+/* ---- one node -------------------------------------------------------------------------------------------------------
+ */
 
 /* The position that a shot leads to becomes part of the tree. */
-static void open_state(struct crew *crew, struct worker *worker, const struct solution *shot, const struct rules_outcome *outcome)
+static void open_state(struct crew *crew, struct worker *worker, const struct solution *shot,
+		       const struct rules_outcome *outcome)
 {
 	struct planner *planner = crew->planner;
 	int index = atomic_fetch_add_explicit(&crew->state_count, 1, memory_order_relaxed);
@@ -194,7 +200,8 @@ static void take_in(struct crew *crew, struct worker *worker, const struct slot 
 {
 	struct planner *planner = crew->planner;
 	struct state *from = &planner->state[slot->node.state];
-	atomic_fetch_or_explicit(&from->landed[played->record.target], (uint8_t)(1u << played->record.pocket), memory_order_relaxed);
+	atomic_fetch_or_explicit(&from->landed[played->record.target], (uint8_t)(1u << played->record.pocket),
+				 memory_order_relaxed);
 	int depth = planner->request->depth, shots = from->shots + 1;
 	bool last = shots == depth || outcome_is_cleared(&played->outcome, planner->ball_count);
 	struct solution solution = solution_make(planner, slot->node.state, &played->record);
@@ -233,7 +240,7 @@ static void work(void *context, int item, int thread)
 	struct planner *planner = crew->planner;
 	struct worker *worker = &crew->worker[item];
 	struct slot *slot = &planner->slot[item];
-	struct workspace *workspace = &planner->work[item + 1];	/* the first is the manager's */
+	struct workspace *workspace = &planner->work[item + 1]; /* the first is the manager's */
 	while (crew->share->take(crew, worker, &slot->node)) {
 		if (node_is_spare(planner, &slot->node))
 			continue;
@@ -247,7 +254,8 @@ static void work(void *context, int item, int thread)
 	pthread_mutex_unlock(&crew->lock);
 }
 
-/* ---- the manager ---------------------------------------------------------------------------------------------------- */
+/* ---- the manager ----------------------------------------------------------------------------------------------------
+ */
 
 /* Goes on from where the first slice has come. */
 static void begin(struct crew *crew)
@@ -257,7 +265,8 @@ static void begin(struct crew *crew)
 	bool any = list && list != &planner->solutions[SAFETY_LIST];
 	atomic_store(&crew->best, any ? solutions_at(list, 0)->cost : INFINITY);
 	note_limit(crew);
-	memcpy(crew->slice, (uint64_t[]){planner->nodes, planner->sims, planner->tried, planner->landed, planner->refined},
+	memcpy(crew->slice,
+	       (uint64_t[]){planner->nodes, planner->sims, planner->tried, planner->landed, planner->refined},
 	       sizeof crew->slice);
 	atomic_store(&crew->state_count, planner->state_count);
 	atomic_store(&crew->dry, 0);

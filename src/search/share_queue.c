@@ -3,7 +3,7 @@
 
 static void begin(struct crew *crew)
 {
-	(void)crew;	/* the first nodes are where they belong */
+	(void)crew; /* the first nodes are where they belong */
 }
 
 static bool take(struct crew *crew, struct worker *worker, struct node *out)
@@ -16,7 +16,8 @@ static bool take(struct crew *crew, struct worker *worker, struct node *out)
 	while (!(taken = crew_pop(crew, &planner->frontier, out)))
 		if (!crew_wait(crew, worker, NULL))
 			break;
-	atomic_store_explicit(&worker->open_count, planner->frontier.count / (uint32_t)crew->worker_count, memory_order_relaxed);
+	atomic_store_explicit(&worker->open_count, planner->frontier.count / (uint32_t)crew->worker_count,
+			      memory_order_relaxed);
 	pthread_mutex_unlock(&crew->lock);
 	return taken;
 }

@@ -85,7 +85,8 @@ static bool take(struct crew *crew, struct worker *worker, struct node *out)
 	return false;
 }
 
-/* A worker that goes to sleep counts itself as dry before it looks at the queues; so either it sees these nodes or is seen here. */
+/* A worker that goes to sleep counts itself as dry before it looks at the queues; so either it sees these nodes or is
+ * seen here. */
 static void give(struct crew *crew, struct worker *worker, const struct node *node, int count)
 {
 	pthread_mutex_lock(&worker->queue_lock);

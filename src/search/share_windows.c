@@ -1,15 +1,16 @@
-/* The thesis' scheme (4.7): each worker goes on with nodes of its own; once in a period k, in its own window of length n, it hands its results and
- * the best of its open nodes to the manager, who deals all that it has out again (algorithm 5). Worker i's window begins at k + i n. The
- * manager's follows the last worker's (in figure 4.47 it comes first: then what was handed over would lie idle for a whole period).
+/* The thesis' scheme (4.7): each worker goes on with nodes of its own; once in a period k, in its own window of length
+ * n, it hands its results and the best of its open nodes to the manager, who deals all that it has out again (algorithm
+ * 5). Worker i's window begins at k + i n. The manager's follows the last worker's (in figure 4.47 it comes first: then
+ * what was handed over would lie idle for a whole period).
  *
- * Windows are for sharing the work of long searches. Who has nothing asks at once, and when the manager has nothing either, whoever has
- * some gives at once: counted apart, as on demand. */
+ * Windows are for sharing the work of long searches. Who has nothing asks at once, and when the manager has nothing
+ * either, whoever has some gives at once: counted apart, as on demand. */
 #include <math.h>
 
 #include "search/crew.h"
 
 enum { HAND_OVER_MAX = 128 };
-static const double HAND_OVER_SHARE = 0.6;	/* of the open nodes, as the thesis' program */
+static const double HAND_OVER_SHARE = 0.6; /* of the open nodes, as the thesis' program */
 
 static double now(const struct crew *crew)
 {
@@ -74,7 +75,8 @@ static void hold_window(struct crew *crew, struct worker *worker)
 	count_up(&worker->held, 1);
 }
 
-/* Hands over when the worker's window is open. A window that went by while a node was worked on is missed: the next one counts. */
+/* Hands over when the worker's window is open. A window that went by while a node was worked on is missed: the next one
+ * counts. */
 static void look_at_clock(struct crew *crew, struct worker *worker)
 {
 	const struct planner_def *def = &crew->planner->def;
