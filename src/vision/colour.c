@@ -13,7 +13,7 @@ static const double INSIDE = 0.75; /* of the outline: its rim mixes with the clo
 static const double FLOOR = 6;	   /* levels added before a logarithm: noise of black */
 /* Spread added to every class, as standard deviations: light that differs from what was learned. */
 static const double SPREAD[F] = {0.10, 0.10, 0.10, 0.10, 0.10, 0.05};
-static const double POOLED_SHARE = 0.3; /* of the classes' common covariance in each class' own */
+static const double POOLED_SHARE = 0.05; /* of the classes' common covariance in each class' own */
 static const double SCALE_FLOOR = 0.01; /* least spread of the apparent radius */
 static const double UNKNOWN_DISTANCE = 9;
 
