@@ -9,7 +9,7 @@
 #include "scenes.h"
 #include "search_scenes.h"
 
-static int rounds = 5;
+static int rounds = 2;
 static double search_seconds = 1, hold_seconds = 10;
 
 static double clock_of(clockid_t clock)
