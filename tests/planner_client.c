@@ -25,8 +25,10 @@ static bool on_plan(void *context, const void *message)
 		return true;
 	}
 	c->plan = *plan;
-	if (c->plans++ == 0)
+	if (c->plans++ == 0) {
 		c->first = now;
+		c->first_plan = *plan;
+	}
 	if (plan->is_final)
 		c->last = now;
 	return true;

@@ -23,8 +23,9 @@ struct planner_client {
 	int plans;				     /* received for it */
 	int64_t finals, cancelled, refused, foreign; /* of all requests; foreign: not for the one asked last */
 	billiard_plan_request_t request;
-	billiard_plan_t plan;  /* the newest for it */
-	billiard_plan_t other; /* the newest for any other */
+	billiard_plan_t plan;	    /* the newest for it */
+	billiard_plan_t first_plan; /* the first for it */
+	billiard_plan_t other;	    /* the newest for any other */
 	billiard_status_t status;
 };
 

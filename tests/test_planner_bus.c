@@ -58,12 +58,12 @@ START_TEST(first_then_better_then_final)
 	client.request.budget_s = 0.5;
 	client_ask(&client);
 	ck_assert(client_wait_first(&client, 10));
-	ck_assert_int_eq(client.plan.sequence, 0);
-	ck_assert(!client.plan.is_final && client.plan.entry_count == 1 &&
-		  client.plan.entries[0].shots[0].keyframe_count > 0);
-	ck_assert(plan_message_check(&client.plan, &config.table));
-	double cost = client.plan.entries[0].cost;
-	int shots = client.plan.entries[0].shot_count;
+	const billiard_plan_t *first = &client.first_plan;
+	ck_assert(first->sequence == 0 && !first->is_final && first->entry_count == 1);
+	ck_assert_int_gt(first->entries[0].shots[0].keyframe_count, 0);
+	ck_assert(plan_message_check(first, &config.table));
+	double cost = first->entries[0].cost;
+	int shots = first->entries[0].shot_count;
 	ck_assert(client_wait(&client, 10));
 	ck_assert_int_eq(client.plan.status, PLAN_MESSAGE_OK);
 	ck_assert_int_eq(client.plan.entry_count, PLAN_MESSAGE_ENTRIES);
