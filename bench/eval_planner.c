@@ -64,6 +64,24 @@ static void no_answer(void)
 	seen.unanswered++;
 }
 
+/* Other load on the machine, or the request itself? */
+static void ask_again(double over)
+{
+	const billiard_plan_request_t *r = &client.request;
+	double again = 1e9;
+	for (int i = 0; i < 5; i++) {
+		client_ask(&client);
+		client_wait(&client, 20);
+		again = fmin(again, client.last - client.sent - r->budget_s);
+	}
+	printf("request %lld: %.0f ms over its budget of %.0f, the best of five more times %.0f; %d balls, depth %d, "
+	       "rails %d, "
+	       "chains %d, speeds %d, plans %d, on %d, in hand %d, nodes %lld\n",
+	       (long long)client.id, 1e3 * over, 1e3 * r->budget_s, 1e3 * again, r->ball_count, r->depth, r->rails,
+	       r->max_balls, r->speeds, r->plans, r->on, r->in_hand, (long long)r->budget_nodes);
+	fflush(stdout);
+}
+
 static void expect_answer(int wanted)
 {
 	double slack = 1; /* s; other load on the machine */
@@ -72,16 +90,8 @@ static void expect_answer(int wanted)
 		return;
 	}
 	double over = client.last - client.sent - fmax(client.request.budget_s, 0);
-	if (over > 0.1) {
-		const billiard_plan_request_t *r = &client.request;
-		printf("request %lld: %.0f ms over its budget of %.0f; %d balls, depth %d, rails %d, chains %d, speeds "
-		       "%d, plans %d, on %d, in hand %d, "
-		       "nodes %lld; %.0f ms by its own account\n",
-		       (long long)client.id, 1e3 * over, 1e3 * r->budget_s, r->ball_count, r->depth, r->rails,
-		       r->max_balls, r->speeds, r->plans, r->on, r->in_hand, (long long)r->budget_nodes,
-		       1e3 * client.plan.seconds);
-		fflush(stdout);
-	}
+	if (over > 0.05)
+		ask_again(over);
 	seen.late += over > slack;
 	seen.worst = fmax(seen.worst, over);
 	if (client.plan.status != wanted || !plan_message_check(&client.plan, &config.table)) {
