@@ -130,6 +130,7 @@ refused 'wants images' detect
 refused 'nonexistent.png' detect "$folder/nonexistent.png"
 refused 'text.png' detect "$folder/text.png"
 refused 'overlay takes one image' detect --overlay "$folder/o.png" "$folder/plot.png" "$folder/plot.png"
+refused 'dump takes one image' detect --dump "$folder/d" "$folder/plot.png" "$folder/plot.png"
 call detect --json "$folder/text.png" "$folder/plot.png"
 [ "$status" = 2 ]
 result $? "detect: one bad image of two gives status 2"

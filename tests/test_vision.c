@@ -5,72 +5,9 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include "app/colour_file.h"
-#include "app/config.h"
-#include "app/table_camera.h"
-#include "vision_scene.h"
+#include "vision_rig.h"
 
 static const double mm = 1e-3;
-
-struct rig {
-	struct config config;
-	struct colour_model colours;
-	struct table_camera *camera;
-	struct vision *vision;
-	struct image_buffer image;
-	struct vision_result result;
-	struct ball ball[BALL_MAX];
-	int count;
-};
-
-static struct rig *rig;
-
-static void setup(void)
-{
-	char err[640];
-	rig = calloc(1, sizeof(*rig));
-	ck_assert_msg(config_load(&rig->config, "config/thesis-table.conf", err, sizeof(err)) == 0, "%s", err);
-	ck_assert_msg(colour_file_read(rig->config.colours, &rig->colours, err, sizeof(err)) == 0, "%s", err);
-	struct vision_def def = config_vision_def(&rig->config, &rig->colours);
-	ck_assert_msg(vision_create(&rig->vision, &def, err, sizeof(err)) == 0, "%s", err);
-	ck_assert_msg(table_camera_create(&rig->camera, &rig->config, err, sizeof(err)) == 0, "%s", err);
-	ck_assert_int_eq(image_buffer_reserve(&rig->image, rig->config.camera.width, rig->config.camera.height), 0);
-}
-
-static void teardown(void)
-{
-	vision_destroy(rig->vision);
-	table_camera_destroy(rig->camera);
-	image_buffer_finish(&rig->image);
-	free(rig);
-}
-
-static bool is_free(vec2 p)
-{
-	double d = 2 * rig->config.table.ball_radius;
-	for (int i = 0; i < rig->count; i++)
-		if (vec2_dist(rig->ball[i].pos, p) < d + 0.1 * mm)
-			return false;
-	for (int i = 0; i < rig->config.table.pocket_count; i++)
-		if (vec2_dist(rig->config.table.pocket[i].centre, p) < 1.2 * rig->config.table.pocket[i].radius)
-			return false;
-	return true;
-}
-
-static void scatter(struct random *r, int count)
-{
-	const struct table *t = &rig->config.table;
-	double hx = t->length / 2 - t->ball_radius, hy = t->width / 2 - t->ball_radius;
-	for (rig->count = 0; rig->count < count;) {
-		vec2 p = {random_in(r, -hx, hx), random_in(r, -hy, hy)};
-		int n = rig->count;
-		if (is_free(p))
-			rig->ball[rig->count++] = ball_at(n == 0  ? COLOUR_WHITE
-							  : n < 7 ? (enum ball_colour)(n + 1)
-								  : COLOUR_RED,
-							  p);
-	}
-}
 
 static void rack(void)
 {
@@ -112,7 +49,7 @@ START_TEST(test_scattered_balls)
 {
 	struct random r = random_begin("vision_scattered");
 	for (int i = 0; i < 6; i++) {
-		scatter(&r, 22);
+		rig_scatter(&r, 22);
 		detect((uint64_t)i);
 		ck_assert_double_lt(check_found(), 1.2 * mm);
 		ck_assert(!rig->result.occluded);
@@ -137,7 +74,7 @@ START_TEST(test_same_frame_same_bits)
 {
 	struct random r = random_begin("vision_repeat");
 	struct vision_result first;
-	scatter(&r, 15);
+	rig_scatter(&r, 15);
 	detect(3);
 	first = rig->result;
 	detect(3);
@@ -219,43 +156,27 @@ END_TEST
 /* ---- streams
  * --------------------------------------------------------------------------------------------------------- */
 
-static void track(int frame, double time)
-{
-	char err[256];
-	table_camera_render(rig->camera, rig->ball, rig->count, (uint64_t)frame, &rig->image.image);
-	ck_assert_msg(vision_track(rig->vision, &rig->image.image, time, &rig->result, err, sizeof(err)) == 0, "%s",
-		      err);
-}
-
-static const struct vision_ball *found_at(vec2 pos, double reach)
-{
-	for (int i = 0; i < rig->result.ball_count; i++)
-		if (vec2_dist(rig->result.ball[i].pos, pos) < reach)
-			return &rig->result.ball[i];
-	return NULL;
-}
-
 START_TEST(test_identity_velocity_and_rest)
 {
 	struct random r = random_begin("vision_track");
 	double dt = 1 / 30.0;
-	scatter(&r, 6);
+	rig_scatter(&r, 6);
 	rig->ball[0].pos = (vec2){-0.7, 0.0};
 	for (int i = 1; i < 6; i++)
 		rig->ball[i].pos = (vec2){-0.6 + 0.25 * i, i % 2 ? 0.25 : -0.25};
 	int frame = 0;
 	for (; frame < 8; frame++)
-		track(frame, frame * dt);
+		rig_track(frame, frame * dt);
 	ck_assert_int_eq(rig->result.ball_count, 6);
-	ck_assert_ptr_nonnull(found_at(rig->ball[0].pos, 1 * mm));
-	int id = found_at(rig->ball[0].pos, 1 * mm)->track;
+	ck_assert_ptr_nonnull(rig_found_at(rig->ball[0].pos, 1 * mm));
+	int id = rig_found_at(rig->ball[0].pos, 1 * mm)->track;
 	vec2 rest[6];
 	for (int i = 1; i < 6; i++)
-		rest[i] = found_at(rig->ball[i].pos, 1 * mm)->pos;
+		rest[i] = rig_found_at(rig->ball[i].pos, 1 * mm)->pos;
 	for (int k = 0; k < 12; k++, frame++) {
 		rig->ball[0].pos.x += 0.9 * dt;
-		track(frame, frame * dt);
-		const struct vision_ball *b = found_at(rig->ball[0].pos, 2 * mm);
+		rig_track(frame, frame * dt);
+		const struct vision_ball *b = rig_found_at(rig->ball[0].pos, 2 * mm);
 		ck_assert_msg(b != NULL, "frame %d: the rolling ball is lost", k);
 		ck_assert_int_eq(b->track, id);
 		if (k > 3) {
@@ -264,13 +185,13 @@ START_TEST(test_identity_velocity_and_rest)
 		}
 		/* What rests does not move with it. */
 		for (int i = 1; i < 6; i++) {
-			ck_assert_ptr_nonnull(found_at(rest[i], 0.15 * mm));
-			ck_assert(found_at(rest[i], 0.15 * mm)->vel.x == 0);
+			ck_assert_ptr_nonnull(rig_found_at(rest[i], 0.15 * mm));
+			ck_assert(rig_found_at(rest[i], 0.15 * mm)->vel.x == 0);
 		}
 	}
 	for (int k = 0; k < 8; k++, frame++)
-		track(frame, frame * dt);
-	const struct vision_ball *b = found_at(rig->ball[0].pos, 1.2 * mm);
+		rig_track(frame, frame * dt);
+	const struct vision_ball *b = rig_found_at(rig->ball[0].pos, 1.2 * mm);
 	ck_assert_ptr_nonnull(b);
 	ck_assert_int_eq(b->track, id);
 	ck_assert(b->vel.x == 0 && b->vel.y == 0);
@@ -280,21 +201,21 @@ END_TEST
 START_TEST(test_balls_come_and_go)
 {
 	struct random r = random_begin("vision_come_and_go");
-	scatter(&r, 5);
+	rig_scatter(&r, 5);
 	int frame = 0;
 	for (; frame < 5; frame++)
-		track(frame, frame * 0.033);
+		rig_track(frame, frame * 0.033);
 	ck_assert_int_eq(rig->result.ball_count, 5);
 	rig->count = 4;
 	for (; frame < 12; frame++)
-		track(frame, frame * 0.033);
+		rig_track(frame, frame * 0.033);
 	ck_assert_int_eq(rig->result.ball_count, 4);
 	rig->count = 5;
 	for (; frame < 20; frame++)
-		track(frame, frame * 0.033);
+		rig_track(frame, frame * 0.033);
 	ck_assert_int_eq(rig->result.ball_count, 5);
 	/* A time that goes back begins anew. */
-	track(frame, 0);
+	rig_track(frame, 0);
 	ck_assert_int_eq(rig->result.ball_count, 5);
 	ck_assert_int_eq(rig->result.ball[0].age, 1);
 }
@@ -304,8 +225,8 @@ START_TEST(test_pose_is_kept_for_its_time)
 {
 	struct random r = random_begin("vision_pose_kept");
 	char err[256];
-	scatter(&r, 4);
-	track(0, 0);
+	rig_scatter(&r, 4);
+	rig_track(0, 0);
 	table_camera_render(rig->camera, rig->ball, rig->count, 1, &rig->image.image);
 	/* Markers covered: the rails turn black. */
 	for (int y = 0; y < 720; y++)
@@ -325,7 +246,7 @@ Suite *test_suite(void)
 {
 	Suite *suite = suite_create("vision");
 	TCase *tc = tcase_create("frames");
-	tcase_add_checked_fixture(tc, setup, teardown);
+	tcase_add_checked_fixture(tc, rig_setup, rig_teardown);
 	tcase_add_test(tc, test_scattered_balls);
 	tcase_add_test(tc, test_rack);
 	tcase_add_test(tc, test_same_frame_same_bits);
@@ -336,7 +257,7 @@ Suite *test_suite(void)
 	tcase_set_timeout(tc, 120);
 	suite_add_tcase(suite, tc);
 	tc = tcase_create("streams");
-	tcase_add_checked_fixture(tc, setup, teardown);
+	tcase_add_checked_fixture(tc, rig_setup, rig_teardown);
 	tcase_add_test(tc, test_identity_velocity_and_rest);
 	tcase_add_test(tc, test_balls_come_and_go);
 	tcase_add_test(tc, test_pose_is_kept_for_its_time);

@@ -1,18 +1,22 @@
 /* billiard detect: balls in photographs. */
+#include <errno.h>
 #include <getopt.h>
 #include <stdio.h>
 #include <stdlib.h>
+#include <string.h>
+#include <sys/stat.h>
 #include <time.h>
 
 #include "app/cmd.h"
 #include "app/colour_file.h"
 #include "app/overlay.h"
 #include "vision/image_io_cv.h"
+#include "vision/stages.h"
 
 static const double mm = 1000; /* in a metre */
 
 struct options {
-	const char *config, *overlay;
+	const char *config, *overlay, *dump;
 	bool json;
 };
 
@@ -26,21 +30,23 @@ struct detector {
 
 static void help(void)
 {
-	puts("usage: billiard detect [-c CONF] [--json] [--overlay OUT.png] IMAGE...\n\n"
+	puts("usage: billiard detect [-c CONF] [--json] [--overlay OUT.png] [--dump DIR] IMAGE...\n\n"
 	     "  -c, --config CONF  table, default $BILLIARD_CONF or the installed one\n"
 	     "  --json             one JSON object per image\n"
 	     "  --overlay OUT.png  the photograph with what was found in it (one image only)\n"
+	     "  --dump DIR         one picture per stage, DIR/01-markers.png and on (one image only)\n"
 	     "Images that cannot be read are named on stderr and give status 2; the others are done all the same.");
 }
 
 /* CMD_OK; CMD_BAD_INPUT; -1 when --help has answered. */
 static int parse(struct options *options, int argc, char **argv)
 {
-	enum { OPT_JSON = 256, OPT_OVERLAY };
+	enum { OPT_JSON = 256, OPT_OVERLAY, OPT_DUMP };
 	static const struct option table[] = {
 		{"config", required_argument, NULL, 'c'},
 		{"json", no_argument, NULL, OPT_JSON},
 		{"overlay", required_argument, NULL, OPT_OVERLAY},
+		{"dump", required_argument, NULL, OPT_DUMP},
 		{"help", no_argument, NULL, 'h'},
 		{NULL, 0, NULL, 0},
 	};
@@ -52,6 +58,8 @@ static int parse(struct options *options, int argc, char **argv)
 			options->json = true;
 		else if (c == OPT_OVERLAY)
 			options->overlay = optarg;
+		else if (c == OPT_DUMP)
+			options->dump = optarg;
 		else if (c != 'h')
 			return CMD_BAD_INPUT;
 		else {
@@ -63,6 +71,8 @@ static int parse(struct options *options, int argc, char **argv)
 		return cmd_usage(argv[0], "wants images");
 	if (options->overlay && optind != argc - 1)
 		return cmd_usage(argv[0], "--overlay takes one image");
+	if (options->dump && optind != argc - 1)
+		return cmd_usage(argv[0], "--dump takes one image");
 	return CMD_OK;
 }
 
@@ -123,6 +133,45 @@ static int print_table(const char *image, const struct vision_result *result, do
 	return ferror(stdout) ? CMD_FAILED : CMD_OK;
 }
 
+/* ---- pictures of the stages -------------------------------------------------------------------------------------- */
+
+struct dump {
+	const char *folder;
+	int count;
+	char err[CMD_ERROR_SIZE]; /* of the first that could not be written */
+};
+
+static void dump_stage(void *user, const char *name, const struct image *image)
+{
+	struct dump *dump = user;
+	char path[CMD_ERROR_SIZE - 32];
+	if (dump->err[0] != '\0')
+		return;
+	int length = snprintf(path, sizeof path, "%s/%02d-%s.png", dump->folder, ++dump->count, name);
+	if (length < 0 || (size_t)length >= sizeof path)
+		snprintf(dump->err, sizeof dump->err, "--dump: a name too long");
+	else if (!image)
+		snprintf(dump->err, sizeof dump->err, "%s: out of memory", path);
+	else
+		image_write_png(image, path, dump->err, sizeof dump->err);
+}
+
+/* Detects once more, so that the time of the first is not that of drawing. */
+static int write_stages(struct detector *detector, const char *folder)
+{
+	char err[CMD_ERROR_SIZE] = "";
+	struct dump dump = {.folder = folder};
+	struct stage_watch watch = {dump_stage, &dump};
+	if (mkdir(folder, 0777) < 0 && errno != EEXIST)
+		return cmd_bad_input("%s: %s", folder, strerror(errno));
+	vision_watch(detector->vision, &watch);
+	int rc = vision_detect(detector->vision, &detector->buffer.image, &detector->result, err, sizeof err);
+	vision_watch(detector->vision, NULL);
+	if (rc < 0 || dump.err[0] != '\0')
+		return cmd_bad_input("%s", rc < 0 ? err : dump.err);
+	return CMD_OK;
+}
+
 /* ---- one image --------------------------------------------------------------------------------------------------- */
 
 static double now_ms(void)
@@ -155,6 +204,8 @@ static int detect(struct detector *detector, const struct options *options, cons
 	double ms = now_ms() - begin;
 	if (code < 0)
 		return cmd_bad_input("%s: %s", path, err);
+	if (options->dump && write_stages(detector, options->dump) != CMD_OK)
+		return CMD_BAD_INPUT;
 	int status = options->overlay ? write_overlay(detector, options->overlay) : CMD_OK;
 	if (status != CMD_OK)
 		return status;

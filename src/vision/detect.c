@@ -372,6 +372,7 @@ static void judge_all(struct detector *d, const struct image *frame, double reli
 /* Rounds of fitting, since every ball's hidden rim depends on its neighbours; then judgement. */
 static void settle(struct detector *d, struct fit_view *view)
 {
+	static const char *const round_name[ROUNDS] = {"round-1", "round-2", "round-3"};
 	bool all_fixed = true;
 	for (int i = 0; i < d->count; i++)
 		all_fixed = all_fixed && d->candidate[i].fixed;
@@ -387,6 +388,7 @@ static void settle(struct detector *d, struct fit_view *view)
 		drop_refused(d);
 		/* What is no ball must neither hide nor push one; in the first round rims are still badly known. */
 		judge_all(d, view->frame, round == 0 ? SUPPORT_ROUGH : 0);
+		stage_fits(d->watch, round_name[round], d, view);
 		if (round + 1 < ROUNDS)
 			try_packed(d, view);
 	}
@@ -443,15 +445,18 @@ void detector_search(struct detector *d, const struct image *frame, const struct
 {
 	struct fit_view view = view_of(d, frame, camera);
 	seeds_find(&d->seeds, &d->scan, active);
+	stage_seeds(d->watch, frame, &d->scan, &d->seeds);
 	view.coarse = true;
 	for (int i = 0; i < d->seeds.count; i++)
 		try_place(d, &view, d->seeds.seed[i].px, SUPPORT_SEED);
+	stage_fits(d->watch, "fits", d, &view);
 }
 
 void detector_settle(struct detector *d, const struct image *frame, const struct camera *camera)
 {
 	struct fit_view view = view_of(d, frame, camera);
 	settle(d, &view);
+	stage_fits(d->watch, "balls", d, &view);
 }
 
 double detector_cover(const struct detector *d, vec2 px)
@@ -464,6 +469,7 @@ bool detector_frame(struct detector *d, const struct image *frame, const struct 
 	detector_begin(d);
 	if (!scan_frame(&d->scan, frame))
 		return false;
+	stage_scan(d->watch, frame, &d->scan);
 	detector_search(d, frame, camera, d->scan.changed);
 	detector_settle(d, frame, camera);
 	return true;

@@ -6,6 +6,7 @@
 #include "vision/fit.h"
 #include "vision/scan.h"
 #include "vision/seeds.h"
+#include "vision/stages.h"
 
 enum { DETECT_MAX = 48 };
 
@@ -28,6 +29,7 @@ struct candidate {
 struct detector {
 	const struct table *table;
 	const struct colour_classifier *colours; /* NULL: none learned yet */
+	const struct stage_watch *watch;	 /* borrowed; NULL: nobody looks */
 	struct scan scan;
 	struct seeds seeds;
 	int count;

@@ -142,7 +142,7 @@ static double nearest_neighbour(const struct fit_view *view, const struct fit *s
 	return nearest;
 }
 
-static void find_edges(const struct fit_view *view, struct fit *fit, int reach, double step_share,
+static void find_edges(const struct fit_view *view, const struct fit *fit, int reach, double step_share,
 		       struct edge edge[OUTLINE_POINTS])
 {
 	double step = fit->outline.radius_px * step_share;
@@ -280,4 +280,17 @@ bool fit_refine(const struct fit_view *view, struct fit *fit, int steps)
 	}
 	judge(fit, edge, shift[CREASE]);
 	return true;
+}
+
+void fit_rim(const struct fit_view *view, const struct fit *fit, struct rim_point out[OUTLINE_POINTS])
+{
+	struct edge edge[OUTLINE_POINTS];
+	find_edges(view, fit, FINE.narrow, FINE.step, edge);
+	for (int i = 0; i < OUTLINE_POINTS; i++) {
+		out[i].px = vec2_madd(fit->outline.point[i], edge[i].offset, fit->outline.normal[i]);
+		out[i].state = edge[i].hidden	? RIM_HIDDEN
+			       : !edge[i].found ? RIM_BARE
+			       : edge[i].crease ? RIM_CREASE
+						: RIM_EDGE;
+	}
 }

@@ -31,4 +31,13 @@ struct fit_view {
 /* Improves pos and scale in steps from fit's own values, at most `steps`. False when it runs away or finds no rim. */
 bool fit_refine(const struct fit_view *view, struct fit *fit, int steps);
 
+/* What the frame shows along an outline, for looking at. */
+enum rim_state { RIM_EDGE, RIM_CREASE /* an edge against a neighbour */, RIM_BARE /* none */, RIM_HIDDEN };
+struct rim_point {
+	vec2 px; /* where the edge is; on the outline when there is none */
+	enum rim_state state;
+};
+/* Along fit->outline as it is; needs its pos and cloth too. */
+void fit_rim(const struct fit_view *view, const struct fit *fit, struct rim_point out[OUTLINE_POINTS]);
+
 #endif

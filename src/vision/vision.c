@@ -113,6 +113,11 @@ void vision_reset(struct vision *vision)
 	vision->tracking = false;
 }
 
+void vision_watch(struct vision *vision, const struct stage_watch *watch)
+{
+	vision->detector.watch = watch;
+}
+
 void vision_samples(const struct vision *vision, struct colour_sample *out)
 {
 	const struct detector *d = &vision->detector;
@@ -244,7 +249,9 @@ int vision_detect(struct vision *vision, const struct image *frame, struct visio
 	/* The scan is shared with the stream, which must then begin with a whole frame again. */
 	vision->tracking = false;
 	vision->detector.count = 0;
-	if (calibration_single(&vision->single, frame, &r.camera.in, r.reason, sizeof(r.reason))) {
+	bool placed = calibration_single(&vision->single, frame, &r.camera.in, r.reason, sizeof(r.reason));
+	stage_markers(vision->detector.watch, frame, &vision->single, vision->def.table);
+	if (placed) {
 		report_calibration(&vision->single, &r);
 		if (place(vision, &r) && detector_frame(&vision->detector, frame, &r.camera))
 			report_single(vision, &r);

@@ -88,6 +88,11 @@ struct vision_refusal {
 /* Fills at most capacity, returns how many there are in all. */
 int vision_refusals(const struct vision *vision, struct vision_refusal *out, int capacity);
 
+/* From now on shows what the stages of each vision_detect() saw, and those that a frame of a stream goes through
+ * (vision/stages.h): several ms a picture. watch is borrowed; NULL: nobody looks, which is how it begins. */
+struct stage_watch;
+void vision_watch(struct vision *vision, const struct stage_watch *watch);
+
 /* Forgets tracks and pose. */
 void vision_reset(struct vision *vision);
 
