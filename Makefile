@@ -34,7 +34,7 @@ TESTS := fsm stability plan_message controller planner_service planner_bus bus p
 	config position cmd plot draw render player table_camera contact_real contact_recorded shot_file \
 	rules cost geometry frontier pool scheme candidate plan plan_thesis plan_hard plan_complete tolerance refine solutions request \
 	ball contact detect event inverse model motion queue roots sim sim_hard table trace \
-	camera pose scan fit colour stabilise image_io capture stages vision vision_photos
+	camera pose scan fit colour stabilise image_io capture stages track vision vision_photos
 TEST_SHARED := harness brute_force bus_fixture service_fixture planner_client random poly_judge scenes search_scenes shot_compare thesis_lists vision_rig vision_scene
 # tests that are scripts: tests/NAME.sh, called with the build folder
 TEST_SCRIPTS := cli demo planner units

@@ -78,6 +78,59 @@ START_TEST(test_one_outlier_moves_nothing)
 }
 END_TEST
 
+/* Off by more than three times the noise, twice in a row, or by more than eight once: it moves. */
+START_TEST(test_when_rest_ends)
+{
+	struct stabiliser s = stabilise_begin((vec2){0, 0}, 0), far;
+	for (int i = 1; i < 10; i++)
+		stabilise_add(&s, (vec2){0, 0}, i * dt, noise);
+	far = s;
+	stabilise_add(&far, (vec2){8.5 * noise, 0}, 10 * dt, noise);
+	ck_assert(far.moving && far.pos.x == 8.5 * noise);
+	ck_assert_double_gt(far.vel.x, 0);
+	stabilise_add(&s, (vec2){4 * noise, 0}, 10 * dt, noise);
+	ck_assert(!s.moving && s.pos.x == 0 && s.vel.x == 0);
+	stabilise_add(&s, (vec2){4 * noise, 0}, 11 * dt, noise);
+	ck_assert(s.moving && s.pos.x == 4 * noise);
+	/* Three in one place and it rests again, there. */
+	stabilise_add(&s, (vec2){4 * noise, 0}, 12 * dt, noise);
+	ck_assert(!s.moving && s.vel.x == 0);
+	ck_assert_double_eq_tol(s.pos.x, 4 * noise, 1e-15);
+}
+END_TEST
+
+/* Frames may come at one time or unevenly: velocity stays finite and right. */
+START_TEST(test_uneven_times)
+{
+	struct random r = random_begin("stabilise_uneven");
+	vec2 v = {0.8, -0.3};
+	struct stabiliser s = stabilise_begin((vec2){0, 0}, 0);
+	double time = 0;
+	for (int i = 1; i < 60; i++) {
+		time += random_in(&r, 0.005, 0.2);
+		stabilise_add(&s, vec2_scale(v, time), time, noise);
+		if (i > 1)
+			ck_assert_double_lt(vec2_dist(s.vel, v), 1e-9);
+	}
+	for (int i = 0; i < 6; i++) {
+		stabilise_add(&s, (vec2){i * 0.1, 0}, time, noise);
+		ck_assert(isfinite(s.vel.x) && isfinite(s.vel.y));
+	}
+}
+END_TEST
+
+/* Slower than what rest tolerates: the mean follows, and lags by no more than that. */
+START_TEST(test_creeping_ball_is_followed)
+{
+	struct stabiliser s = stabilise_begin((vec2){0, 0}, 0);
+	for (int i = 1; i < 3000; i++) {
+		double x = i * dt * 0.5 * mm;
+		stabilise_add(&s, (vec2){x, 0}, i * dt, noise);
+		ck_assert_double_lt(fabs(s.pos.x - x), 4 * noise);
+	}
+}
+END_TEST
+
 /* Equations 4.1 and 4.2 by hand. */
 START_TEST(test_thesis_blending)
 {
@@ -94,6 +147,20 @@ START_TEST(test_thesis_blending)
 }
 END_TEST
 
+/* The history holds THESIS_HISTORY frames: what is older has no say. */
+START_TEST(test_thesis_history_ends)
+{
+	struct thesis_stabiliser s = {0};
+	vec2 p = {0, 0};
+	for (int i = 0; i < THESIS_HISTORY; i++)
+		p = thesis_stabilise(&s, (vec2){5 * mm, 0}, 20 * mm, 5);
+	for (int i = 0; i < THESIS_HISTORY; i++)
+		p = thesis_stabilise(&s, (vec2){0, 0}, 20 * mm, 5);
+	ck_assert_double_eq_tol(p.x, 0, 1e-15);
+	ck_assert_int_eq(s.count, THESIS_HISTORY);
+}
+END_TEST
+
 Suite *test_suite(void)
 {
 	Suite *suite = suite_create("stabilise");
@@ -102,7 +169,11 @@ Suite *test_suite(void)
 	tcase_add_test(tc, test_rolling_ball_does_not_lag);
 	tcase_add_test(tc, test_ball_comes_to_rest_where_it_is);
 	tcase_add_test(tc, test_one_outlier_moves_nothing);
+	tcase_add_test(tc, test_when_rest_ends);
+	tcase_add_test(tc, test_uneven_times);
+	tcase_add_test(tc, test_creeping_ball_is_followed);
 	tcase_add_test(tc, test_thesis_blending);
+	tcase_add_test(tc, test_thesis_history_ends);
 	suite_add_tcase(suite, tc);
 	return suite;
 }
