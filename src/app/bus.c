@@ -2,6 +2,7 @@
 
 #include <arpa/inet.h>
 #include <errno.h>
+#include <glib.h>
 #include <lcm/lcm.h>
 #include <pthread.h>
 #include <stdio.h>
@@ -31,6 +32,7 @@ struct bus {
 	pthread_mutex_t lock;	/* of buffer */
 	uint8_t *buffer;	/* owned, for encoding */
 	size_t buffer_size;
+	bool is_file;
 	int64_t received, ignored;
 	char last_ignored[128];
 };
@@ -148,6 +150,7 @@ int bus_open(struct bus **out, const char *url, char *err, size_t err_size)
 		bus_close(bus);
 		return -EIO;
 	}
+	bus->is_file = strncmp(url, "file:", 5) == 0;
 	*out = bus;
 	return 0;
 }
@@ -282,6 +285,11 @@ int bus_descriptor(struct bus *bus)
 	return lcm_get_fileno(bus->lcm);
 }
 
+bool bus_is_file(const struct bus *bus)
+{
+	return bus->is_file;
+}
+
 int64_t bus_received(const struct bus *bus)
 {
 	return bus->received;
@@ -303,6 +311,10 @@ void bus_text(char *out, size_t size, const uint8_t *bytes, size_t byte_count)
 	for (; n + 1 < size && n < byte_count && bytes[n]; n++)
 		out[n] = bytes[n] < ' ' || bytes[n] == 127 ? '?' : (char)bytes[n];
 	out[n] = '\0';
+	/* Texts are cut by the byte on their way here. */
+	const char *bad;
+	while (!g_utf8_validate(out, -1, &bad))
+		out[bad - out] = '?';
 }
 
 void bus_set_text(uint8_t *bytes, size_t byte_count, const char *text)

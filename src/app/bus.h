@@ -1,4 +1,4 @@
-/* The LCM bus: typed subscriptions that survive bad messages, publishing without allocation. One thread, but publishing may be
+/* The LCM bus: typed subscriptions that survive bad messages, publishing through one buffer that only grows. One thread, but publishing may be
  * called from any. */
 #ifndef BILLIARD_APP_BUS_H
 #define BILLIARD_APP_BUS_H
@@ -62,6 +62,8 @@ bool bus_utime_ok(int64_t utime);
 int bus_descriptor(struct bus *bus);
 /* Handles what waits, at most 1000 messages. 0, or -EIO when the bus is gone (the end of a replayed log). */
 int bus_drain(struct bus *bus);
+/* True when messages come from a recorded log (file://), which has an end. */
+bool bus_is_file(const struct bus *bus);
 
 /* Messages taken and messages ignored so far. */
 int64_t bus_received(const struct bus *bus);
@@ -69,7 +71,8 @@ int64_t bus_ignored(const struct bus *bus);
 /* Reason of the last one ignored: "PLAN: malformed, 12 bytes". Never NULL. */
 const char *bus_last_ignored(const struct bus *bus);
 
-/* Text of a byte[] member as a C string of at most size - 1 bytes, always terminated; control characters become '?'. */
+/* Text of a byte[] member as a C string of at most size - 1 bytes, always terminated. Control characters and what
+ * is no UTF-8 become '?'. */
 void bus_text(char *out, size_t size, const uint8_t *bytes, size_t byte_count);
 /* The other way: cut to fit, padded with NUL. */
 void bus_set_text(uint8_t *bytes, size_t byte_count, const char *text);

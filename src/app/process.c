@@ -184,9 +184,12 @@ static int on_bus(sd_event_source *source, int fd, uint32_t events, void *contex
 	struct process *process = context;
 	int r = bus_drain(process->bus);
 	if (r < 0) {
-		/* The end of a replayed log: nothing more will come. */
+		/* The end of a replayed log is no failure; a bus that is gone is one, and a supervisor starts the process again. */
+		bool replayed = bus_is_file(process->bus);
+		if (!replayed)
+			process_error(process, "the bus is gone");
 		publish_status(process);
-		return sd_event_exit(process->event, 0);
+		return sd_event_exit(process->event, replayed ? 0 : 1);
 	}
 	return 0;
 }

@@ -8,6 +8,7 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "app/bus.h"
 #include "app/draw.h"
 
 /* Names: px_ is a place in the picture, everything else is in table metres. */
@@ -100,9 +101,13 @@ static bool path_circle(const struct render *render, vec2 centre, double radius)
 static void stroke(const struct render *render, vec2 at, double width, double dash, double gap)
 {
 	double scale = scale_at(render, at);
+	if (!(scale > 0)) { /* too far out for a width */
+		cairo_new_path(render->cairo);
+		return;
+	}
 	double dashes[2] = {dash * scale, gap * scale};
 	cairo_set_line_width(render->cairo, fmax(1, width * scale));
-	cairo_set_dash(render->cairo, dashes, dash > 0 && gap > 0 ? 2 : 0, 0);
+	cairo_set_dash(render->cairo, dashes, dashes[0] > 0 && dashes[1] > 0 ? 2 : 0, 0);
 	cairo_stroke(render->cairo);
 }
 
@@ -111,8 +116,9 @@ static void stroke(const struct render *render, vec2 at, double width, double da
 static void draw_text_item(const struct render *render, const billiard_draw_item_t *item, vec2 at)
 {
 	vec2 px, x, y;
-	char text[sizeof(item->text) + 1] = "";
-	memcpy(text, item->text, sizeof(item->text));
+	char text[sizeof(item->text)];
+	/* What is no UTF-8 would put an end to all drawing. */
+	bus_text(text, sizeof text, item->text, sizeof item->text);
 	if (!to_px(render, at, &px) || !jacobian(render, at, &x, &y) || !(item->radius > 0))
 		return;
 	/* font space: one unit is one em, its y axis runs down */
@@ -293,7 +299,10 @@ const uint32_t *render_pixels(const struct render *render, int *width, int *heig
 
 int render_write_png(struct render *render, const char *path, char *err, size_t err_size)
 {
-	cairo_status_t status = cairo_surface_write_to_png(render->surface, path);
+	cairo_status_t status = cairo_status(render->cairo);
+	errno = 0;
+	if (status == CAIRO_STATUS_SUCCESS)
+		status = cairo_surface_write_to_png(render->surface, path);
 	if (status == CAIRO_STATUS_SUCCESS)
 		return 0;
 	int code = status == CAIRO_STATUS_NO_MEMORY ? -ENOMEM : errno > 0 ? -errno : -EIO;

@@ -79,6 +79,10 @@ static int launch(struct supervised *c, char *err, size_t err_size)
 	int r = pid < 0 ? -errno : sd_event_add_child(c->supervisor->event, &c->child, pid, WEXITED, on_child, c);
 	if (r < 0) {
 		snprintf(err, err_size, "%s: %s", c->name, strerror(-r));
+		if (pid > 0) { /* nobody would wait for it */
+			kill(pid, SIGKILL);
+			waitpid(pid, NULL, 0);
+		}
 		return r;
 	}
 	c->pid = pid;

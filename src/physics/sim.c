@@ -18,8 +18,8 @@ static void renew_motion(struct sim *sim, int i)
 
 static void renew_pair(struct sim *sim, int low, int high)
 {
-	double t = detect_pair(sim->table, &sim->ball[low], &sim->motion[low], &sim->ball[high], &sim->motion[high],
-			       sim->time, &sim->solved);
+	double t = detect_pair(sim->table, &sim->model, &sim->ball[low], &sim->motion[low], &sim->ball[high],
+			       &sim->motion[high], sim->time, &sim->solved);
 	queue_set_pair(&sim->queue, low, high, t);
 }
 
@@ -85,7 +85,7 @@ static void advance(struct sim *sim, int i)
 void sim_strike(struct sim *sim, int ball, const struct shot *shot)
 {
 	assert(ball >= 0 && ball < sim->ball_count && sim->ball[ball].phase != BALL_POTTED);
-	assert(isfinite(shot->angle) && shot->speed > 0 && shot->speed <= 20);
+	assert(isfinite(shot->angle) && shot->speed > 0 && shot->speed <= SHOT_SPEED_MAX);
 	assert(shot->side * shot->side + shot->follow * shot->follow < 1);
 	assert(shot->elevation >= 0 && shot->elevation < 1.5707);
 	advance(sim, ball);

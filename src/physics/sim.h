@@ -10,6 +10,9 @@
 #include "physics/table.h"
 #include "physics/trace.h"
 
+/* m/s; no strike is faster. */
+#define SHOT_SPEED_MAX 20.0
+
 /* A cue strike. Defaults to a level centre hit when only angle and speed are set. */
 struct shot {
 	double angle;	  /* rad, direction of the cue, counter-clockwise from +x */

@@ -11,7 +11,7 @@
 #include "physics/table.h"
 
 /* Contacts of one instant that are solved together. */
-enum { GROUP_MAX = 48 };
+enum { GROUP_MAX = 64 }; /* 22 equal discs have at most 49 contacts */
 
 struct sim {
 	const struct table *table; /* borrowed */

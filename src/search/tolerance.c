@@ -26,6 +26,8 @@ static bool still_falls(struct trial *trial, double off)
 		trial->record.shot.speed *= 1 + off;
 	else
 		trial->record.shot.angle += off;
+	if (!(trial->record.shot.speed > 0 && trial->record.shot.speed <= SHOT_SPEED_MAX))
+		return false;
 	return shot_play(trial->work, planner->def.table, &planner->def.model, trial->state->ball, planner->ball_count,
 			 &trial->state->rules, &trial->record, &outcome) &&
 	       trial->record.foul == 0 && shot_is_as_meant(&trial->record);

@@ -45,9 +45,10 @@ static inline void sample(const struct image *im, float x, float y, float out[3]
 		out[c] = w00 * (float)a[c] + w10 * (float)a[c + 3] + w01 * (float)b[c] + w11 * (float)b[c + 3];
 }
 
+/* With a margin for the rounding to float between here and sample(). */
 static bool is_inside(const struct image *im, double x, double y)
 {
-	return x >= 0 && y >= 0 && x < im->width - 1 && y < im->height - 1;
+	return x >= 0 && y >= 0 && x < im->width - 1.01 && y < im->height - 1.01;
 }
 
 /* Where the profile v (1 inside, 0 outside) falls through a half nearest to the middle. */
