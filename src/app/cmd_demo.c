@@ -3,6 +3,7 @@
 #include <errno.h>
 #include <fcntl.h>
 #include <getopt.h>
+#include <glib.h>
 #include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
@@ -319,22 +320,29 @@ static int on_tick(sd_event_source *source, uint64_t usec, void *context)
 
 /* ---- set-up --------------------------------------------------------------------------------------------------------- */
 
+/* An option with a value that may hold blanks or quotes. The caller frees with g_free(). */
+static char *option_text(const char *format, const char *value)
+{
+	char *quoted = g_shell_quote(value), *text = g_strdup_printf(format, quoted);
+	g_free(quoted);
+	return text;
+}
+
 static int start_services(struct demo *d, char *err, size_t err_size)
 {
-	char source[TEXT_SIZE + 32] = "--source lcm:CAMERA", position[TEXT_SIZE + 32] = "";
-	if (d->options.position)
-		snprintf(position, sizeof position, "--position %s", d->options.position);
-	if (d->options.input)
-		snprintf(source, sizeof source, "--hold 4 --source dir:%s", d->options.input);
+	char *position = d->options.position ? option_text("--position %s", d->options.position) : NULL;
+	char *photographs = d->options.input ? option_text("--hold 4 --source dir:%s", d->options.input) : NULL;
 	const struct { const char *name, *arguments; bool wanted; } services[] = {
 		{"billiard-planner", "", true},	 {"billiard-projector", "", true},
-		{"billiard-infinity", "", true}, {"billiard-vision", source, true},
-		{"billiard-table", position, !d->options.input},
+		{"billiard-infinity", "", true}, {"billiard-vision", photographs ? photographs : "--source lcm:CAMERA", true},
+		{"billiard-table", position ? position : "", !d->options.input},
 	};
 	int r = 0;
 	for (size_t i = 0; i < sizeof services / sizeof services[0] && r == 0; i++)
 		if (services[i].wanted)
 			r = supervisor_start(&d->supervisor, services[i].name, services[i].arguments, err, err_size);
+	g_free(position);
+	g_free(photographs);
 	return r;
 }
 

@@ -1,6 +1,7 @@
 #include "app/supervisor.h"
 
 #include <errno.h>
+#include <glib.h>
 #include <libgen.h>
 #include <limits.h>
 #include <signal.h>
@@ -11,7 +12,7 @@
 #include <sys/wait.h>
 #include <unistd.h>
 
-enum { RESTART_US = 500000, KILL_US = 3000000, ARGUMENT_MAX = 24 };
+enum { RESTART_US = 500000, KILL_US = 3000000 };
 
 void supervisor_block(void)
 {
@@ -30,20 +31,6 @@ void supervisor_init(struct supervisor *s, sd_event *event, const char *config, 
 /* In the child: becomes the program. Never returns. */
 static _Noreturn void become(const struct supervised *c, const char *path, pid_t parent)
 {
-	char arguments[sizeof c->arguments];
-	char *argv[ARGUMENT_MAX + 6] = {(char *)c->name};
-	int argc = 1;
-	argv[argc++] = "-c";
-	argv[argc++] = (char *)c->supervisor->config;
-	if (c->supervisor->bus) {
-		argv[argc++] = "--bus";
-		argv[argc++] = (char *)c->supervisor->bus;
-	}
-	memcpy(arguments, c->arguments, sizeof arguments);
-	char *rest = NULL;
-	for (char *a = strtok_r(arguments, " ", &rest); a && argc < ARGUMENT_MAX; a = strtok_r(NULL, " ", &rest))
-		argv[argc++] = a;
-	argv[argc] = NULL;
 	sigset_t none;
 	sigemptyset(&none);
 	sigprocmask(SIG_SETMASK, &none, NULL);
@@ -51,7 +38,7 @@ static _Noreturn void become(const struct supervised *c, const char *path, pid_t
 	prctl(PR_SET_PDEATHSIG, SIGTERM);
 	if (getppid() != parent)
 		_exit(0);
-	execv(path, argv);
+	execv(path, c->argv);
 	fprintf(stderr, "%s: %s\n", path, strerror(errno));
 	_exit(127);
 }
@@ -151,6 +138,24 @@ static int on_child(sd_event_source *source, const siginfo_t *info, void *contex
 	return 0;
 }
 
+/* The command line of a service, NULL when its arguments cannot be read. The caller frees with g_strfreev(). */
+static char **command_line(const struct supervised *c, const char *arguments)
+{
+	char **own = NULL;
+	if (arguments[strspn(arguments, " ")] && !g_shell_parse_argv(arguments, NULL, &own, NULL))
+		return NULL;
+	GStrvBuilder *builder = g_strv_builder_new();
+	g_strv_builder_add_many(builder, c->name, "-c", c->supervisor->config, NULL);
+	if (c->supervisor->bus)
+		g_strv_builder_add_many(builder, "--bus", c->supervisor->bus, NULL);
+	if (own)
+		g_strv_builder_addv(builder, (const char **)own);
+	char **argv = g_strv_builder_end(builder);
+	g_strv_builder_unref(builder);
+	g_strfreev(own);
+	return argv;
+}
+
 int supervisor_start(struct supervisor *s, const char *name, const char *arguments, char *err, size_t err_size)
 {
 	if (s->count == SUPERVISOR_MAX) {
@@ -160,7 +165,12 @@ int supervisor_start(struct supervisor *s, const char *name, const char *argumen
 	struct supervised *c = &s->service[s->count++];
 	*c = (struct supervised){.supervisor = s};
 	snprintf(c->name, sizeof c->name, "%s", name);
-	snprintf(c->arguments, sizeof c->arguments, "%s", arguments);
+	c->argv = command_line(c, arguments);
+	if (!c->argv) {
+		snprintf(err, err_size, "%s: arguments \"%s\" cannot be split", name, arguments);
+		s->count--;
+		return -EINVAL;
+	}
 	return launch(c, err, err_size);
 }
 
@@ -199,6 +209,7 @@ void supervisor_finish(struct supervisor *s)
 		struct supervised *c = &s->service[i];
 		sd_event_source_disable_unref(c->child);
 		sd_event_source_disable_unref(c->restart);
+		g_strfreev(c->argv);
 		if (c->pid)
 			waitpid(c->pid, NULL, 0);
 	}

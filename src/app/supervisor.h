@@ -12,7 +12,7 @@ enum { SUPERVISOR_MAX = 8 };
 struct supervised {
 	struct supervisor *supervisor;
 	char name[24];			/* program, found beside this one */
-	char arguments[256];		/* split at blanks */
+	char **argv;			/* owned, of the program */
 	pid_t pid;			/* 0: not running */
 	sd_event_source *child, *restart;	/* owned */
 	int restarts;
@@ -32,7 +32,7 @@ struct supervisor {
 /* Blocks SIGCHLD, as sd-event needs it: to be called before other threads exist (a bus starts one). */
 void supervisor_block(void);
 void supervisor_init(struct supervisor *s, sd_event *event, const char *config, const char *bus);
-/* 0, -ENOSPC, or a negative errno with the reason. */
+/* arguments are split as a shell would, quotes and all. 0, -ENOSPC, -EINVAL (an open quote), or a negative errno with the reason. */
 int supervisor_start(struct supervisor *s, const char *name, const char *arguments, char *err, size_t err_size);
 /* Asks all to end (SIGTERM, after three seconds SIGKILL); the event loop exits with status when the last has gone. */
 void supervisor_stop(struct supervisor *s, int status);
