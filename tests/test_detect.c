@@ -120,6 +120,8 @@ static void judge(struct tally *tally, const long double c[5], long double horiz
 			fmax(tally->worst, (double)(entry.certain ? fmaxl(error, fabsl(entry.root - t)) : error));
 }
 
+static const struct model exact;
+
 START_TEST(contact_times_of_two_balls)
 {
 	struct table table = scene_thesis_table();
@@ -142,7 +144,7 @@ START_TEST(contact_times_of_two_balls)
 		distance_polynomial(&sa, &sb, 2 * (long double)table.ball_radius, c);
 		if (c[0] <= 0)
 			continue;
-		double t = detect_pair(&table, &a, &ma, &b, &mb, now, &count);
+		double t = detect_pair(&table, &exact, &a, &ma, &b, &mb, now, &count);
 		int before = tally.missed + tally.invented;
 		judge(&tally, c, (long double)end - now, t - now);
 		if (tally.missed + tally.invented > before && before < 5)
@@ -160,10 +162,42 @@ START_TEST(contact_times_of_two_balls)
 }
 END_TEST
 
+/* Rounded down, a contact is never late, and the balls are as near as the grid allows: five coefficients, each less
+ * than one step too low. */
+START_TEST(contacts_on_a_grid_come_early)
+{
+	struct table table = scene_thesis_table();
+	struct model grid = {.contact_grid = 1e-6};
+	struct random r = random_begin("contacts_on_a_grid_come_early");
+	struct solve_count count = {0};
+	double worst = 0;
+	for (int met = 0; met < 20000;) {
+		struct ball a = random_ball(&r, &table), b = random_ball(&r, &table);
+		if (vec2_dist(a.pos, b.pos) < 2 * table.ball_radius)
+			continue;
+		aim(&r, &table, &a, &b);
+		struct motion ma = detect_motion(&table, &a, 0), mb = detect_motion(&table, &b, 0);
+		double t = detect_pair(&table, &grid, &a, &ma, &b, &mb, 0, &count);
+		ck_assert_double_le(t, detect_pair(&table, &exact, &a, &ma, &b, &mb, 0, &count) + 1e-9);
+		if (!isfinite(t))
+			continue;
+		met++;
+		struct ball at = motion_advance(&a, &table, t), other = motion_advance(&b, &table, t);
+		double gap = vec2_norm2(vec2_sub(at.pos, other.pos)) - 4 * table.ball_radius * table.ball_radius;
+		double most = grid.contact_grid * (1 + t * (1 + t * (1 + t * (1 + t))));
+		ck_assert_double_ge(gap, -1e-12);
+		ck_assert_double_le(gap, most + 1e-12);
+		worst = fmax(worst, vec2_dist(at.pos, other.pos) - 2 * table.ball_radius);
+	}
+	printf("balls apart at the contact: at most %.2g m\n", worst);
+	fflush(stdout);
+}
+END_TEST
+
 START_TEST(cushion_is_met_at_one_radius)
 {
 	struct table table = scene_box_table(2, 1);
-	struct model model = {BALL_MODEL_ELASTIC, CUSHION_MODEL_MIRROR, POCKET_MODEL_NONE, false};
+	struct model model = {BALL_MODEL_ELASTIC, CUSHION_MODEL_MIRROR, POCKET_MODEL_NONE, false, 0};
 	struct random r = random_begin("cushion_is_met_at_one_radius");
 	struct solve_count count = {0};
 	int hits = 0;
@@ -207,7 +241,7 @@ START_TEST(easy_cases_cost_no_quartic)
 	for (int i = 0; i < 5; i++) {
 		struct solve_count count = {0};
 		struct motion a = detect_motion(&table, pair[i][0], 0), b = detect_motion(&table, pair[i][1], 0);
-		detect_pair(&table, pair[i][0], &a, pair[i][1], &b, 0, &count);
+		detect_pair(&table, &exact, pair[i][0], &a, pair[i][1], &b, 0, &count);
 		ck_assert_int_eq((int)count.quartic, 0);
 		ck_assert_int_eq((int)count.quadratic, (int)want_quadratic[i]);
 		ck_assert_int_eq((int)(count.quadratic + count.culled), 1);
@@ -221,6 +255,7 @@ Suite *test_suite(void)
 	TCase *tcase = tcase_create("detect");
 	tcase_set_timeout(tcase, 120);
 	tcase_add_test(tcase, contact_times_of_two_balls);
+	tcase_add_test(tcase, contacts_on_a_grid_come_early);
 	tcase_add_test(tcase, cushion_is_met_at_one_radius);
 	tcase_add_test(tcase, easy_cases_cost_no_quartic);
 	suite_add_tcase(suite, tcase);

@@ -117,8 +117,22 @@ static inline struct place place_at(const struct ball *ball, const struct motion
 			      vec2_madd(ball->vel, dt, m->acceleration)};
 }
 
-double detect_pair(const struct table *table, const struct ball *a, const struct motion *ma, const struct ball *b,
-		   const struct motion *mb, double now, struct solve_count *count)
+/* Every coefficient is rounded down, so for t >= 0 the rounded distance is never more than the true one: contacts come
+ * early, balls never overlap. False for balls closer than the grid can tell, where only the exact way sees who
+ * approaches. */
+static bool entry_on_grid(double grid, vec2 p, vec2 v, vec2 a, double gap, double horizon, double *t)
+{
+	double c[5] = {gap, 2 * vec2_dot(p, v), vec2_norm2(v) + vec2_dot(p, a), vec2_dot(v, a), 0.25 * vec2_norm2(a)};
+	if (gap < grid)
+		return false;
+	for (int i = 0; i < 5; i++)
+		c[i] = floor(c[i] / grid) * grid;
+	*t = roots_quartic_entry(c, horizon);
+	return true;
+}
+
+double detect_pair(const struct table *table, const struct model *model, const struct ball *a, const struct motion *ma,
+		   const struct ball *b, const struct motion *mb, double now, struct solve_count *count)
 {
 	double distance = 2 * table->ball_radius;
 	double reach = distance + ma->reach + mb->reach;
@@ -130,9 +144,13 @@ double detect_pair(const struct table *table, const struct ball *a, const struct
 	double end = ma->reach == 0 ? mb->end : mb->reach == 0 ? ma->end : fmin(ma->end, mb->end);
 	struct place pa = place_at(a, ma, now), pb = place_at(b, mb, now);
 	bool straight = (ma->reach == 0 && mb->straight) || (mb->reach == 0 && ma->straight);
-	double t = disc_entry(vec2_sub(pb.pos, pa.pos), vec2_sub(pb.vel, pa.vel),
-			      vec2_sub(mb->acceleration, ma->acceleration), distance, fmax(end - now, 0),
-			      ma->speed + mb->speed, straight, count);
+	vec2 p = vec2_sub(pb.pos, pa.pos), v = vec2_sub(pb.vel, pa.vel);
+	vec2 acceleration = vec2_sub(mb->acceleration, ma->acceleration);
+	double horizon = fmax(end - now, 0), gap = vec2_norm2(p) - distance * distance, t;
+	if (model->contact_grid > 0 && entry_on_grid(model->contact_grid, p, v, acceleration, gap, horizon, &t))
+		count->quartic++;
+	else
+		t = disc_entry(p, v, acceleration, distance, horizon, ma->speed + mb->speed, straight, count);
 	return now + t;
 }
 

@@ -27,9 +27,10 @@ struct motion {
 /* Motion of a ball from now on. */
 struct motion detect_motion(const struct table *table, const struct ball *ball, double now);
 
-/* Contact time of two balls at or after now (>= both begins), INFINITY if none within their phases. */
-double detect_pair(const struct table *table, const struct ball *a, const struct motion *ma, const struct ball *b,
-		   const struct motion *mb, double now, struct solve_count *count);
+/* Contact time of two balls at or after now (>= both begins), INFINITY if none within their phases. On a contact grid
+ * (model->contact_grid) a contact comes early, never late. */
+double detect_pair(const struct table *table, const struct model *model, const struct ball *a, const struct motion *ma,
+		   const struct ball *b, const struct motion *mb, double now, struct solve_count *count);
 
 /* The first thing that happens to ball number index by itself: end of its phase, cushion, jaw or pocket. Time INFINITY
  * and EVENT_NONE for a ball at rest. The ball is given at motion->begin. */

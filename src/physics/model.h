@@ -30,6 +30,8 @@ struct model {
 	enum cushion_model cushion;
 	enum pocket_model pocket;
 	bool thesis_motion; /* no spin: a struck ball slides, then rolls; a cushion sets it rolling (4.6.4.9) */
+	/* SI; the coefficients of two balls' quartic (4.76 to 4.80) are rounded down to multiples of it; 0: exact */
+	double contact_grid;
 };
 
 /* "thesis", "simple" (restitution, circle), "simple-elastic", "real" (frictional, Stronge, jaws), "real-mathavan".
