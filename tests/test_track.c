@@ -64,10 +64,11 @@ START_TEST(test_crossing_keeps_identities)
 		alone_setup();
 		vec2 along = vec2_from_angle(random_in(&r, -M_PI, M_PI)), meet = {0, 0};
 		double va = random_in(&r, 0.3, 2), vb = random_in(&r, 0.3, 2), apart = random_in(&r, 0.053, 0.08);
+		double between = random_in(&r, 0, 1); /* frames before they meet */
 		int id[2] = {0};
 		for (int i = -8; i <= 8; i++) {
-			vec2 a = vec2_madd(meet, va * i * dt, along);
-			vec2 b = vec2_madd(vec2_madd(meet, -vb * i * dt, along), apart, vec2_perp(along));
+			vec2 a = vec2_madd(meet, va * (i + between) * dt, along);
+			vec2 b = vec2_madd(vec2_madd(meet, -vb * (i + between) * dt, along), apart, vec2_perp(along));
 			vec2 place[2] = {a, b};
 			int first = (int)(random_u64(&r) & 1);
 			for (int k = 0; k < 2; k++)
