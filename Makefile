@@ -167,7 +167,7 @@ setup:
 
 demo: setup
 	+@$(MAKE) --no-print-directory -j$(JOBS) programs
-	@scripts/demo $(BUILD) $(INPUT)
+	@scripts/demo "$(BUILD)" $(if $(INPUT),"$(INPUT)")
 
 check: setup
 	+@$(MAKE) --no-print-directory check-built

@@ -177,11 +177,12 @@ END_TEST
 static double next_frame;
 static void play_vision(void)
 {
-	static int64_t seq;
+	static int64_t frames;
 	if (process_seconds(NULL) < next_frame)
 		return;
 	next_frame = process_seconds(NULL) + 0.03;
-	billiard_table_state_t state = {.utime = process_utime(), .seq = ++seq, .calibration = 1, .ball_count = 3};
+	frames++;
+	billiard_table_state_t state = {.utime = process_utime(), .seq = frames, .calibration = 1, .ball_count = 3};
 	static const struct {
 		enum ball_colour colour;
 		vec2 at;

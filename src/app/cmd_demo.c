@@ -14,12 +14,14 @@
 #include "app/cmd.h"
 #include "app/draw.h"
 #include "app/plan_message.h"
+#include "app/position.h"
 #include "app/process.h"
 #include "app/supervisor.h"
 #include "vision/capture_cv.h"
 #include "vision/image_io_cv.h"
 
 static const double PICTURE_DELAY = 0.4;	/* s from a drawn proposal until its light is in the camera's picture */
+static const double LAST_STATUS = 1.5;		/* s after the last photograph: figures are told once a second */
 static const double GIVE_UP = 30;		/* s without a new proposal */
 static const double RADIAN_DEG = 57.29577951308232;
 enum { TICK_US = 50000, TEXT_SIZE = 256 };
@@ -44,12 +46,13 @@ struct demo {
 	double shown_at;			/* s, when it was first drawn; 0: its pictures are kept */
 	int64_t shown_utime;
 	int proposals, played, failed;
+	int bad;				/* photographs that could not be read */
 	bool shot_runs;
 	billiard_table_state_t before;		/* truth when the shot began */
 	char fell[TEXT_SIZE];			/* balls that fell in the running shot */
 	char picture[TEXT_SIZE];		/* photograph shown, from billiard-vision's status */
 	double last_progress;			/* s */
-	bool source_ended;
+	double source_ended;			/* s, 0 not yet */
 	int status;
 };
 
@@ -225,6 +228,18 @@ static bool on_draw(void *context, const void *message)
 	return true;
 }
 
+/* A figure of that name, 0 when there is none. */
+static double metric(const billiard_status_t *status, const char *name)
+{
+	for (int i = 0; i < status->metric_count && i < (int)(sizeof status->metrics / sizeof status->metrics[0]); i++) {
+		char text[sizeof status->metrics[i].name];
+		bus_text(text, sizeof text, status->metrics[i].name, sizeof status->metrics[i].name);
+		if (strcmp(text, name) == 0)
+			return status->metrics[i].value;
+	}
+	return 0;
+}
+
 static bool on_status(void *context, const void *message)
 {
 	struct demo *d = context;
@@ -233,9 +248,11 @@ static bool on_status(void *context, const void *message)
 	bus_text(name, sizeof name, s->process, sizeof s->process);
 	bus_text(state, sizeof state, s->state, sizeof s->state);
 	if (strcmp(name, "billiard-vision") == 0 && strcmp(state, "end of source") == 0)
-		d->source_ended = true;
+		d->source_ended = d->source_ended > 0 ? d->source_ended : process_seconds(NULL);
 	if (strcmp(name, "billiard-vision") == 0 && strncmp(state, "photo ", 6) == 0)
 		snprintf(d->picture, sizeof d->picture, "%s", state + 6);
+	if (strcmp(name, "billiard-vision") == 0)
+		d->bad = (int)metric(s, "bad");
 	return true;
 }
 
@@ -307,7 +324,7 @@ static int on_tick(sd_event_source *source, uint64_t usec, void *context)
 		ask_projector_picture(d);
 		print_proposal(d);
 	}
-	bool all_shown = d->source_ended && d->shown_at == 0 && now - d->last_progress > 1.5;
+	bool all_shown = d->source_ended > 0 && now - d->source_ended > LAST_STATUS && d->shown_at == 0;
 	if (all_shown)
 		supervisor_stop(&d->supervisor, d->status);
 	if (now - d->last_progress > GIVE_UP && !d->supervisor.stopping) {
@@ -375,8 +392,13 @@ static int run(struct demo *d)
 	int status = process_run(&d->process);
 	int wanted = d->options.input ? 1 : d->options.shots;
 	int got = d->options.input ? d->proposals : d->played;
-	printf("%d proposals%s, %d pictures failed\n", d->proposals, d->options.input ? "" : d->played == d->options.shots ? ", all played" : "",
+	printf("%d proposals%s, %d pictures failed", d->proposals, d->options.input ? "" : d->played == d->options.shots ? ", all played" : "",
 	       d->failed);
+	if (d->bad)
+		printf(", %d photographs could not be read", d->bad);
+	putchar('\n');
+	if (status == 0 && d->bad)
+		status = 2;
 	return status ? status : got < wanted || d->failed;
 }
 
@@ -429,13 +451,26 @@ static int check_input(const char *folder)
 	return r;
 }
 
+static int check_position(const struct demo_options *options)
+{
+	char err[512];
+	struct config config;
+	struct position position;
+	int r = config_load(&config, options->config, err, sizeof err);
+	if (r == 0)
+		r = position_read(&position, &config.table, options->position, err, sizeof err);
+	if (r < 0)
+		fprintf(stderr, "billiard demo: %s\n", err);
+	return r;
+}
+
 int cmd_demo(int argc, char **argv)
 {
 	struct demo_options options;
 	int r = parse(&options, argc, argv);
 	if (r)
 		return r == 1 ? 0 : 2;
-	if (options.input && check_input(options.input) < 0)
+	if ((options.input && check_input(options.input) < 0) || (options.position && check_position(&options) < 0))
 		return 2;
 	struct demo *d = calloc(1, sizeof *d);
 	if (!d)

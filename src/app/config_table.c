@@ -138,13 +138,13 @@ static const struct config_key camera_keys[] = {
 
 #define MARKER_AT(member) (offsetof(struct marker_layout, marker[0].member) - offsetof(struct marker_layout, marker[0]))
 static const struct config_key marker_keys[] = {
-	WHOLE("id", UNIT_NONE, 0, 999, MARKER_AT(id)),
+	WHOLE("id", UNIT_NONE, 0, 49, MARKER_AT(id)),
 	POINT("centre", MARKER_AT(centre)),
 	END,
 };
 
 static const struct config_key markers_keys[] = {
-	WHOLE("dictionary_count", UNIT_NONE, 1, 1000, AT(config.markers.dictionary_count)),
+	WHOLE("dictionary_count", UNIT_NONE, 1, 50, AT(config.markers.dictionary_count)),
 	WHOLE("dictionary_bits", UNIT_NONE, 3, 7, AT(config.markers.dictionary_bits)),
 	NUMBER("side", UNIT_MM, 5, 500, AT(config.markers.side)),
 	NUMBER("height", UNIT_MM, -100, 500, AT(config.markers.height)),

@@ -125,7 +125,9 @@ static void publish_camera(struct vision_process *p)
 	char err[PROCESS_ERROR_SIZE];
 	double rate = p->config.camera_rate;
 	const struct image *frame = &p->frame.image.image;
-	if (rate <= 0 || 1e-6 * (double)(p->frame.utime - p->last_camera) < 0.99 / rate)
+	double since = 1e-6 * (double)(p->frame.utime - p->last_camera);
+	/* A clock that was set back does not stop them. */
+	if (rate <= 0 || (since >= 0 && since < 0.99 / rate))
 		return;
 	p->last_camera = p->frame.utime;
 	if (image_encode_jpeg(frame, JPEG_QUALITY, &p->jpeg, err, sizeof err) < 0) {
@@ -246,13 +248,7 @@ static int create_vision(struct vision_process *p, char *err, size_t err_size)
 	int r = colour_file_read(p->config.colours, &p->colours, err, err_size);
 	if (r < 0)
 		return r;
-	struct vision_def def = vision_def_default();
-	def.table = &p->config.table;
-	def.intrinsics = p->config.camera;
-	def.markers = p->config.markers;
-	def.marker_interval = p->config.marker_interval;
-	def.pose_keep = p->config.pose_keep;
-	def.colours = &p->colours;
+	struct vision_def def = config_vision_def(&p->config, &p->colours);
 	return vision_create(&p->vision, &def, err, err_size);
 }
 

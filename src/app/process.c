@@ -73,7 +73,7 @@ static int parse_hold(const char *text, double *out)
 int process_parse(struct process_options *out, const char *name, int argc, char **argv)
 {
 	const struct option_set *set = options_of(name);
-	*out = (struct process_options){.config = config_default_path(), .hold = 2};
+	*out = (struct process_options){.config = config_default_path(), .hold = 4};
 	int c;
 	while ((c = getopt_long(argc, argv, "c:h", set->options, NULL)) != -1) {
 		switch (c) {

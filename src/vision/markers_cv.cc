@@ -84,6 +84,8 @@ int marker_finder_create(struct marker_finder **out, int dictionary_count, int d
 				   "dictionary of %d markers of %d bits, allowed 1..50 and 3..7", dictionary_count,
 				   dictionary_bits);
 	try {
+		/* Vision has one thread, OpenCV's own would take the other programs' cores. */
+		cv::setNumThreads(0);
 		f = new marker_finder;
 		f->dictionary = cv::aruco::generateCustomDictionary(dictionary_count, dictionary_bits);
 		f->parameters = cv::aruco::DetectorParameters::create();
