@@ -202,7 +202,7 @@ START_TEST(proposal_shows_its_parts)
 	ck_assert_int_eq(list.plan_id, 7);
 	ck_assert_int_ge(count_items(DRAW_POLYLINE, false), 2); /* cue ball to contact, red to its end */
 	ck_assert_int_ge(count_items(DRAW_POLYLINE, true), 1);	/* cue ball after it */
-	ck_assert_ptr_nonnull(find_text("1.2 m/s  1/2"));
+	ck_assert_ptr_nonnull(find_text("1.2 m/s  0\u00b0  1/2"));
 	ck_assert_ptr_nonnull(find_text(table.pocket[5].name));
 	bool pocket = false; /* something around it, on the bed */
 	for (int i = 0; i < list.item_count; i++) {

@@ -305,6 +305,13 @@ const char *bus_last_ignored(const struct bus *bus)
 	return bus->last_ignored;
 }
 
+bool bus_is_for(const billiard_command_t *command, const char *program)
+{
+	char target[sizeof command->target];
+	bus_text(target, sizeof target, command->target, sizeof command->target);
+	return !target[0] || strcmp(target, program) == 0;
+}
+
 void bus_text(char *out, size_t size, const uint8_t *bytes, size_t byte_count)
 {
 	size_t n = 0;

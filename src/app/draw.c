@@ -15,9 +15,9 @@ struct draw_options draw_options_default(void)
 uint32_t draw_ball_rgba(int colour)
 {
 	static const uint32_t rgba[COLOUR_COUNT] = {
-		[COLOUR_WHITE] = 0xffffffff, [COLOUR_RED] = 0xff5040ff,	  [COLOUR_YELLOW] = 0xffe040ff,
-		[COLOUR_GREEN] = 0x40ff70ff, [COLOUR_BROWN] = 0xc08040ff, [COLOUR_BLUE] = 0x50a0ffff,
-		[COLOUR_PINK] = 0xffa0c8ff,  [COLOUR_BLACK] = 0x9090a0ff, [COLOUR_UNKNOWN] = 0xc0c0c0ff,
+		[COLOUR_WHITE] = 0xffffffff, [COLOUR_RED] = 0xff9888ff,	  [COLOUR_YELLOW] = 0xffe040ff,
+		[COLOUR_GREEN] = 0x90ffb0ff, [COLOUR_BROWN] = 0xf0b888ff, [COLOUR_BLUE] = 0x90c8ffff,
+		[COLOUR_PINK] = 0xffa0c8ff,  [COLOUR_BLACK] = 0xb8b8d0ff, [COLOUR_UNKNOWN] = 0xc0c0c0ff,
 	};
 	return colour >= 0 && colour < COLOUR_COUNT ? rgba[colour] : rgba[COLOUR_UNKNOWN];
 }

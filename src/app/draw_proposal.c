@@ -18,6 +18,7 @@ static const double TEXT_REACH = 10, POCKET_REACH = 0.6, INFO_REACH = 0.2;	    /
 /* Left free for the text by the paths of the other balls. */
 enum { ITEMS_KEPT = 4, POINTS_KEPT = 8 };
 enum { POCKET_POINTS = 49 };
+static const double RADIAN = 57.29577951308232; /* degrees */
 
 static const uint32_t HALO_RGBA = 0xc0ffffff, GHOST_RGBA = 0xffffffff, CUE_RGBA = 0xffffffff, TABLE_RGBA = 0x80c0ffff,
 		      TEXT_RGBA = 0xe0ffffff, INFO_RGBA = 0xa0e0e0ff;
@@ -100,6 +101,25 @@ static void draw_ghost(const struct scene *scene, vec2 at)
 	draw_field_ring(&scene->field, scene->list, at, GHOST * scene->table->ball_radius, &pen);
 }
 
+static bool falls(const struct scene *scene, int ball)
+{
+	for (int i = 0; i < scene->shot->potted_count; i++)
+		if (scene->shot->potted_ball[i] == ball)
+			return true;
+	return false;
+}
+
+/* Where a ball that moved comes to rest. */
+static void draw_end(const struct scene *scene, int ball, const struct draw_path *path, uint32_t rgba)
+{
+	double radius = scene->table->ball_radius;
+	if (path->count < 2 || falls(scene, ball) || vec2_dist(path->point[0], path->point[path->count - 1]) < radius)
+		return;
+	const struct draw_pen pen = {THIN, rgba, false};
+	if (has_room(scene->list, 1))
+		draw_field_ring(&scene->field, scene->list, path->point[path->count - 1], radius, &pen);
+}
+
 static void draw_cue(const struct scene *scene, int cue)
 {
 	struct draw_path path;
@@ -109,9 +129,10 @@ static void draw_cue(const struct scene *scene, int cue)
 	if (path.contact < 0)
 		return;
 	draw_ghost(scene, path.point[path.contact]);
-	if (scene->options->other_paths)
-		stroke(scene, path.point + path.contact, path.count - path.contact,
-		       &(struct draw_pen){THIN, CUE_RGBA, true});
+	if (!scene->options->other_paths)
+		return;
+	stroke(scene, path.point + path.contact, path.count - path.contact, &(struct draw_pen){THIN, CUE_RGBA, true});
+	draw_end(scene, cue, &path, CUE_RGBA);
 }
 
 static void draw_object(const struct scene *scene, int ball, bool dashed)
@@ -120,6 +141,7 @@ static void draw_object(const struct scene *scene, int ball, bool dashed)
 	draw_path_of(&path, scene->plan, scene->shot, ball);
 	struct draw_pen pen = {dashed ? THIN : LINE, draw_ball_rgba(scene->plan->colours[ball]), dashed};
 	stroke(scene, path.point, path.count, &pen);
+	draw_end(scene, ball, &path, pen.rgba);
 }
 
 /* A shot whose keyframes did not fit: straight from ball to ball as far as the start position tells. */
@@ -181,12 +203,13 @@ static void draw_pocket(const struct scene *scene)
 	draw_pocket_arc(scene, &scene->table->pocket[pocket], &(struct draw_pen){2 * LINE, rgba, false});
 }
 
-/* The speed where the player looks, at the cue ball; the pocket's name at the pocket. */
+/* Speed and angle (counter-clockwise from the way to the black cushion) where the player looks, at the cue ball; the pocket's name at the
+ * pocket. */
 static void draw_labels(const struct scene *scene, int number, int shots)
 {
 	char text[64];
 	int pocket = scene->shot->pocket, cue = cue_ball(scene);
-	int length = snprintf(text, sizeof(text), "%.1f m/s", scene->shot->speed);
+	int length = snprintf(text, sizeof(text), "%.1f m/s  %.0f\u00b0", scene->shot->speed, scene->shot->angle * RADIAN);
 	if (shots > 1)
 		snprintf(text + length, sizeof(text) - (size_t)length, "  %d/%d", number, shots);
 	vec2 at_cue = ball_lies(scene, cue) ? ball_start(scene, cue) : (vec2){0, 0};
@@ -243,7 +266,7 @@ void draw_proposal(billiard_draw_list_t *list, const struct table *table, const 
 		draw_halos(&scene.field, list);
 	draw_pocket(&scene);
 	draw_paths(&scene);
-	if (scene.shot->speed > 0 && scene.shot->speed < 100)
+	if (scene.shot->speed > 0 && scene.shot->speed < 100 && isfinite(scene.shot->angle))
 		draw_labels(&scene, shot + 1, plan->entries[entry].shot_count);
 	if (options->info)
 		draw_infos(&scene);

@@ -29,7 +29,7 @@ static bool on_command(void *context, const void *message)
 	char name[sizeof command->name], argument[sizeof command->argument];
 	bus_text(name, sizeof name, command->name, sizeof command->name);
 	bus_text(argument, sizeof argument, command->argument, sizeof command->argument);
-	if (strcmp(name, "cancel") == 0)
+	if (strcmp(name, "cancel") == 0 && bus_is_for(command, p->process.name))
 		planner_service_cancel(p->service, strtoll(argument, NULL, 10));
 	return true;
 }
@@ -41,8 +41,8 @@ static int on_answers(sd_event_source *source, int fd, uint32_t events, void *co
 	while (planner_service_answer(p->service, &p->answer)) {
 		bus_publish(p->process.bus, "PLAN", &bus_plan, &p->answer);
 		if (p->answer.status == PLAN_MESSAGE_REFUSED)
-			process_error(&p->process, "request %lld refused: %.90s", (long long)p->answer.request_id,
-				      p->answer.reason);
+			/* without the id: the same reason again is no news for the journal */
+			process_error(&p->process, "request refused: %.90s", p->answer.reason);
 	}
 	return 0;
 }

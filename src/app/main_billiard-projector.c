@@ -61,7 +61,7 @@ static bool on_command(void *context, const void *message)
 	char name[sizeof command->name], argument[sizeof command->argument];
 	bus_text(name, sizeof name, command->name, sizeof command->name);
 	bus_text(argument, sizeof argument, command->argument, sizeof command->argument);
-	if (strcmp(name, "snapshot") == 0 && argument[0])
+	if (strcmp(name, "snapshot") == 0 && argument[0] && bus_is_for(command, p->process.name))
 		snapshot(p, argument);
 	return true;
 }

@@ -209,7 +209,8 @@ static struct planner_def define(const struct config *config)
 	def.scheme = planner->scheme;
 	def.sync_period = planner->sync_period;
 	/* A window for each worker and one for the manager must fit into a period. */
-	double longest = def.sync_period / (def.workers + 1);
+	/* A hair less, so that rounding does not make them too many. */
+	double longest = def.sync_period / (def.workers + 1) * (1 - 1e-9);
 	def.sync_window = planner->sync_window > 0 && planner->sync_window < longest ? planner->sync_window : longest;
 	def.progress_plans = 1; /* each costs simulations for its keyframes: all of them come with the final answer */
 	def.result_plans = PLAN_MESSAGE_ENTRIES;
@@ -277,13 +278,13 @@ int planner_service_descriptor(const struct planner_service *service)
 
 /* A request that is not worked on still ends with a final answer. Locked by the caller. */
 static void answer_without_search(struct planner_service *service, const billiard_plan_request_t *request,
-				  const char *reason)
+				  enum plan_message_status status, const char *reason)
 {
 	billiard_plan_t plan;
 	plan_message_begin(&plan, request);
 	plan.utime = process_utime();
 	plan.is_final = 1;
-	plan.status = PLAN_MESSAGE_CANCELLED;
+	plan.status = (int8_t)status;
 	bus_set_text(plan.reason, sizeof plan.reason, reason);
 	post(service, &plan);
 }
@@ -295,9 +296,21 @@ static void drop_present(struct planner_service *service)
 		atomic_store_explicit(&service->unwanted, service->busy, memory_order_relaxed);
 		return;
 	}
-	answer_without_search(service, &service->request, REPLACED);
+	answer_without_search(service, &service->request, PLAN_MESSAGE_CANCELLED, REPLACED);
 	service->figures.cancelled++;
 	service->has_request = false;
+}
+
+/* A request that cannot be searched does not end one that can. Locked by the caller. */
+static bool refuse(struct planner_service *service, const billiard_plan_request_t *request)
+{
+	struct plan_request unused;
+	char reason[sizeof service->draft.reason];
+	if (plan_request_from_message(&unused, request, &service->config->table, reason, sizeof reason) == 0)
+		return false;
+	answer_without_search(service, request, PLAN_MESSAGE_REFUSED, reason);
+	service->figures.refused++;
+	return true;
 }
 
 static void take(struct planner_service *service, const billiard_plan_request_t *request)
@@ -318,7 +331,9 @@ bool planner_service_request(struct planner_service *service, const billiard_pla
 	pthread_mutex_lock(&service->lock);
 	bool idle = !service->busy && !service->has_request;
 	bool recent = process_seconds(NULL) - service->last_time < OUTDATED;
-	if (request->id > service->present_id) {
+	if (refuse(service, request)) {
+		/* answered */
+	} else if (request->id > service->present_id) {
 		take(service, request);
 	} else if (request->id == service->present_id) {
 		/* Asked again: it runs, or its last answer was lost. */
@@ -330,7 +345,7 @@ bool planner_service_request(struct planner_service *service, const billiard_pla
 	} else {
 		char reason[sizeof service->draft.reason];
 		snprintf(reason, sizeof reason, "outdated: request %lld came after it", (long long)service->present_id);
-		answer_without_search(service, request, reason);
+		answer_without_search(service, request, PLAN_MESSAGE_CANCELLED, reason);
 		service->figures.outdated++;
 		accepted = false;
 	}
