@@ -2,6 +2,7 @@
 #include <errno.h>
 #include <getopt.h>
 #include <jansson.h>
+#include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
@@ -219,6 +220,51 @@ int cmd_status(int argc, char **argv)
 	return status;
 }
 
+/* What can be said to the services, and what goes with it. */
+enum argument { ARGUMENT_NONE, ARGUMENT_SECONDS, ARGUMENT_ID, ARGUMENT_FILE };
+static const struct control {
+	const char *name;
+	enum argument argument;
+} controls[] = {
+	{"pause", ARGUMENT_NONE},	   {"resume", ARGUMENT_NONE},	       {"infinity", ARGUMENT_NONE},
+	{"next", ARGUMENT_NONE},	   {"previous", ARGUMENT_NONE},	       {"halo", ARGUMENT_NONE},
+	{"paths", ARGUMENT_NONE},	   {"table", ARGUMENT_NONE},	       {"info", ARGUMENT_NONE},
+	{"animation", ARGUMENT_NONE},	   {"animation-stop", ARGUMENT_NONE},  {"animation-restart", ARGUMENT_NONE},
+	{"animation-seek", ARGUMENT_SECONDS}, {"snapshot", ARGUMENT_FILE}, {"cancel", ARGUMENT_ID},
+};
+
+static bool argument_fits(enum argument kind, const char *text)
+{
+	char *rest;
+	if (kind == ARGUMENT_NONE || !text)
+		return kind == ARGUMENT_NONE && !text;
+	if (kind == ARGUMENT_SECONDS)
+		return isfinite(strtod(text, &rest)) && rest != text && !*rest;
+	if (kind == ARGUMENT_ID)
+		return strtoll(text, &rest, 10) > 0 && !*rest;
+	return *text != '\0';
+}
+
+/* The words of the command line as a command. 0, or 2 after a message. */
+static int read_control(int count, char **word, billiard_command_t *command)
+{
+	static const char *const wanted[] = {"no argument", "seconds", "the id of a request", "a file"};
+	if (count < 1 || count > 2 || strlen(word[count - 1]) >= sizeof command->argument)
+		return cmd_bad_input("billiard control: a name (and at most one argument) is wanted; see --help");
+	const char *argument = count == 2 ? word[1] : NULL;
+	for (size_t i = 0; i < sizeof controls / sizeof controls[0]; i++) {
+		if (strcmp(word[0], controls[i].name) != 0)
+			continue;
+		if (!argument_fits(controls[i].argument, argument))
+			return cmd_bad_input("billiard control: %s: found \"%s\", wanted %s", word[0], argument ? argument : "nothing",
+					     wanted[controls[i].argument]);
+		bus_set_text(command->name, sizeof command->name, word[0]);
+		bus_set_text(command->argument, sizeof command->argument, argument ? argument : "");
+		return 0;
+	}
+	return cmd_bad_input("billiard control: no command has the name \"%s\"; see --help", word[0]);
+}
+
 int cmd_control(int argc, char **argv)
 {
 	struct options o;
@@ -231,16 +277,10 @@ int cmd_control(int argc, char **argv)
 	if (status)
 		return status == 1 ? 0 : 2;
 	billiard_command_t command = {.utime = process_utime()};
-	if (optind >= argc || argc - optind > 2 || strlen(argv[optind]) >= sizeof command.name ||
-	    (argc - optind == 2 && strlen(argv[optind + 1]) >= sizeof command.argument)) {
-		fprintf(stderr, "billiard control: a name (and at most one argument) is wanted; see --help\n");
-		return 2;
-	}
+	if ((status = read_control(argc - optind, argv + optind, &command)))
+		return status;
 	if ((status = open_bus(&o, "control", &config, &bus)))
 		return status;
-	bus_set_text(command.name, sizeof command.name, argv[optind]);
-	if (argc - optind == 2)
-		bus_set_text(command.argument, sizeof command.argument, argv[optind + 1]);
 	status = bus_publish(bus, "COMMAND", &bus_command, &command) < 0;
 	bus_close(bus);
 	return status;
