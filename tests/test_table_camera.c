@@ -195,6 +195,40 @@ START_TEST(balls_have_the_outline_of_a_sphere)
 }
 END_TEST
 
+/* The rim mirrors what is seen beside it: cloth before cloth, and nothing before the dark of a pocket. A pixel inside
+ * of the rim much of that is left. */
+START_TEST(rim_mirrors_what_is_behind)
+{
+	fill_config();
+	struct table_camera *camera = begin();
+	vec2 pos = {0.887, -0.402}, rim[RIM], middle = {0, 0};
+	struct ball ball = ball_at(COLOUR_BLACK, pos);
+	table_camera_render(camera, &ball, 1, 0, &frame[0]);
+	silhouette(table_camera_truth(camera), pos, config.table.ball_radius, rim);
+	for (int k = 0; k < RIM; k++)
+		middle = vec2_madd(middle, 1.0 / RIM, rim[k]);
+	double before_dark = 0, before_cloth = 0;
+	int dark = 0, cloth = 0;
+	for (int k = 0; k < RIM; k++) {
+		vec2 out = vec2_unit(vec2_sub(rim[k], middle)), beside = vec2_madd(rim[k], 3, out),
+		     rather = vec2_madd(rim[k], -1, out);
+		int behind = grey(&frame[0], (int)lround(beside.x), (int)lround(beside.y));
+		int seen = grey(&frame[0], (int)lround(rather.x), (int)lround(rather.y));
+		if (behind < 30) {
+			dark++;
+			before_dark += seen;
+		} else if (behind > 270) {
+			cloth++;
+			before_cloth += seen;
+		}
+	}
+	ck_assert_int_ge(dark, 8);
+	ck_assert_int_ge(cloth, 8);
+	ck_assert_double_lt(before_dark / dark, 0.75 * before_cloth / cloth);
+	table_camera_destroy(camera);
+}
+END_TEST
+
 START_TEST(potted_and_far_balls_are_not_seen)
 {
 	fill_config();
@@ -393,6 +427,7 @@ Suite *test_suite(void)
 	tcase_add_test(geometry, camera_stands_where_it_is_configured);
 	tcase_add_test(geometry, markers_are_seen_where_they_lie);
 	tcase_add_test(geometry, balls_have_the_outline_of_a_sphere);
+	tcase_add_test(geometry, rim_mirrors_what_is_behind);
 	tcase_add_test(geometry, potted_and_far_balls_are_not_seen);
 	tcase_add_test(geometry, order_of_balls_does_not_matter);
 	tcase_add_test(geometry, odd_poses_work);

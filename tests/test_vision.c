@@ -57,6 +57,20 @@ START_TEST(test_scattered_balls)
 }
 END_TEST
 
+/* Half of the rim before a pocket's dark. */
+START_TEST(test_balls_at_corner_pockets)
+{
+	for (int i = 0; i < 4; i++) {
+		rig->ball[0] = ball_at(COLOUR_BLACK, (vec2){i & 1 ? 0.887 : -0.887, i & 2 ? 0.402 : -0.402});
+		rig->ball[1] = ball_at(COLOUR_GREEN, (vec2){i & 1 ? -0.887 : 0.887, i & 2 ? 0.402 : -0.402});
+		rig->ball[2] = ball_at(COLOUR_RED, (vec2){0, 0});
+		rig->count = 3;
+		detect((uint64_t)i);
+		ck_assert_double_lt(check_found(), 1.2 * mm);
+	}
+}
+END_TEST
+
 START_TEST(test_rack)
 {
 	rack();
@@ -248,6 +262,7 @@ Suite *test_suite(void)
 	TCase *tc = tcase_create("frames");
 	tcase_add_checked_fixture(tc, rig_setup, rig_teardown);
 	tcase_add_test(tc, test_scattered_balls);
+	tcase_add_test(tc, test_balls_at_corner_pockets);
 	tcase_add_test(tc, test_rack);
 	tcase_add_test(tc, test_same_frame_same_bits);
 	tcase_add_test(tc, test_empty_table_has_no_balls);

@@ -141,6 +141,20 @@ static float mirror(struct vec3 normal, struct vec3 to_eye)
 	return below * (MIRROR + (1 - MIRROR) * k * k * k * k * k);
 }
 
+/* Whether what the surface mirrors is a pocket. At the rim that is what is seen right beside it: there a ball before
+ * the dark has no bright rim. */
+static bool mirrors_pocket(const struct table *table, struct vec3 at, struct vec3 normal, struct vec3 to_eye)
+{
+	struct vec3 way = madd((struct vec3){-to_eye.x, -to_eye.y, -to_eye.z}, 2 * dot(normal, to_eye), normal);
+	if (way.z >= 0)
+		return false;
+	vec2 met = {at.x - way.x * at.z / way.z, at.y - way.y * at.z / way.z};
+	for (int i = 0; i < table->pocket_count; i++)
+		if (vec2_dist(table->pocket[i].centre, met) < table->pocket[i].radius)
+			return true;
+	return false;
+}
+
 /* Blinn and Phong: how much of a lamp the surface mirrors into the eye. */
 static float shine(struct vec3 normal, struct vec3 to_lamp, struct vec3 to_eye)
 {
@@ -157,12 +171,13 @@ static void shade_ball(const struct table_camera *camera, const struct sphere *s
 	float lamp = (float)fmax(0, dot(normal, to_lamp)), glow = (float)fmax(0, dot(normal, to_glow)), picture[3];
 	float around = mirror(normal, to_eye),
 	      mirrored = SHINE_LAMP * shine(normal, to_lamp, to_eye) + SHINE_GLOW * shine(normal, to_glow, to_eye);
+	float cloth = around > 0 && !mirrors_pocket(&camera->table, at, normal, to_eye) ? around : 0;
 	table_camera_picture_at(camera, (vec2){at.x, at.y}, at.z, picture);
 	for (int c = 0; c < 3; c++) {
 		float drawn = picture[c] > 0 ? powf(1 + picture[c], 2.2f) - 1 : 0;
 		float room = AMBIENT * (0.75f + 0.25f * (float)normal.z) + LAMP * lamp + GLOW * glow;
 		light[c] = (1 - around) * sphere->albedo[c] * (room * sphere->room[c] + glow * drawn) +
-			   around * sphere->cloth[c] + mirrored * sphere->room[c];
+			   cloth * sphere->cloth[c] + mirrored * sphere->room[c];
 	}
 }
 
