@@ -21,6 +21,7 @@ static void alone_setup(void)
 	table = scene_table();
 	memset(&detector, 0, sizeof(detector));
 	detector.table = &table;
+	detector.scan.factor = 1;
 	tracker_init(&tracker, &detector);
 }
 
