@@ -314,7 +314,8 @@ void crew_run(struct crew *crew, plan_progress_fn *progress, void *context, stru
 	begin(crew);
 	pool_begin(planner->pool, crew->worker_count, work, crew);
 	pthread_mutex_lock(&crew->lock);
-	while (crew->finished < crew->worker_count) {
+	/* The last improvement is told, too: it may come with the end. */
+	while (crew->finished < crew->worker_count || (crew->improved && progress)) {
 		if (crew->improved && progress) {
 			crew->improved = false;
 			sum_up(crew);
