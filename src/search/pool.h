@@ -16,7 +16,7 @@ void pool_destroy(struct pool *pool); /* NULL is fine */
 void pool_for(struct pool *pool, int count, pool_fn *fn, void *context);
 
 /* The same in two halves, for a caller that has other things to do in between: items are worked on by the pool's own
- * threads alone, each by another one when there are at most as many items. */
+ * threads alone, on any of them: a fast one may take two. */
 void pool_begin(struct pool *pool, int count, pool_fn *fn, void *context);
 void pool_end(struct pool *pool);
 
