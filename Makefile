@@ -23,11 +23,18 @@ SEARCH := candidate cost crew figures frontier geometry plan play pool rank refi
 	rules safety scheme share_queue share_steal share_windows shot solutions step tolerance
 VISION := calibration camera colour detect fit linear marker_edges outline pose reason scan seeds stabilise stages track vision
 VISION_CV := capture_cv image_io_cv markers_cv marker_image_cv
-# app: what the programs share
-APP := text_file shot_file colour_file cmd_calibrate config config_reader config_table config_vision position cmd cmd_simulate cmd_detect cmd_plan plot overlay draw draw_field draw_path draw_proposal render \
-	table_scene table_camera table_camera_ball player \
-	bus process fsm stability plan_message animation planner_service controller frame_source window supervisor cmd_run cmd_status cmd_demo
-# programs: src/app/main_NAME.c becomes build/NAME
+# app: what the programs share, room by room
+APP_PROCESS := bus process supervisor frame_source
+APP_CONFIG := config config_reader config_table config_vision text_file position shot_file colour_file
+APP_CONTROL := fsm stability controller
+APP_LIGHT := animation draw draw_field draw_path draw_proposal render window
+APP_PLANNER := plan_message planner_service
+APP_VIRTUAL := table_scene table_camera table_camera_ball player
+APP_COMMANDS := cmd cmd_calibrate cmd_demo cmd_detect cmd_plan cmd_run cmd_simulate cmd_status overlay plot
+APP := $(addprefix process/,$(APP_PROCESS)) $(addprefix config/,$(APP_CONFIG)) $(addprefix control/,$(APP_CONTROL)) \
+	$(addprefix light/,$(APP_LIGHT)) $(addprefix planner/,$(APP_PLANNER)) $(addprefix virtual/,$(APP_VIRTUAL)) \
+	$(addprefix commands/,$(APP_COMMANDS))
+# programs: src/app/programs/main_NAME.c becomes build/NAME
 PROGRAMS := billiard billiard-vision billiard-planner billiard-infinity billiard-projector billiard-table
 # tests/test_NAME.c each; tests/NAME.c shared by them
 TESTS := fsm stability plan_message controller planner_service planner_bus bus process supervisor frame_source services loop replay \
@@ -133,7 +140,7 @@ $(BUILD)/src/vision/%.o: MODULE_CFLAGS = $(if $(filter -O2,$(OPT)),-O3)
 $(BUILD)/sysconfdir: FORCE
 	@mkdir -p $(@D)
 	@echo '$(SYSCONFDIR)' | cmp -s - $@ || echo '$(SYSCONFDIR)' >$@
-$(BUILD)/src/app/config.o: $(BUILD)/sysconfdir
+$(BUILD)/src/app/config/config.o: $(BUILD)/sysconfdir
 FORCE:
 
 # Generated code warns under -Wextra: flags of its own.
@@ -144,7 +151,7 @@ $(BUILD)/lcmtypes/.stamp: $(patsubst %,lcmtypes/%.lcm,$(LCM_TYPES))
 $(BUILD)/lcmtypes/billiard_%.c: $(BUILD)/lcmtypes/.stamp ;
 $(BUILD)/lcmtypes/%.o: $(BUILD)/lcmtypes/%.c
 	$(CC) -std=gnu17 $(BASE) -w $(APP_CFLAGS) -c $< -o $@
-$(APP_O) $(patsubst %,$(BUILD)/src/app/main_%.o,$(PROGRAMS)) $(TEST_SHARED_O) \
+$(APP_O) $(patsubst %,$(BUILD)/src/app/programs/main_%.o,$(PROGRAMS)) $(TEST_SHARED_O) \
 	$(patsubst %,$(BUILD)/tests/test_%.o,$(TESTS)) $(patsubst %,$(BUILD)/bench/bench_%.o,$(BENCHES)) \
 	$(patsubst %,$(BUILD)/fuzz/fuzz_%.o,$(FUZZERS)): | $(BUILD)/lcmtypes/.stamp
 
@@ -157,7 +164,7 @@ $(BUILD)/bench/eval_%: $(BUILD)/bench/eval_%.o $(BENCH_SHARED_O) $(ARCHIVES)
 	$(link) $(TEST_LIBS) $(LIBS)
 $(BUILD)/fuzz_%: $(BUILD)/fuzz/fuzz_%.o $(ARCHIVES)
 	$(link) -fsanitize=fuzzer $(LIBS)
-$(PROGRAM_BINS): $(BUILD)/%: $(BUILD)/src/app/main_%.o $(ARCHIVES)
+$(PROGRAM_BINS): $(BUILD)/%: $(BUILD)/src/app/programs/main_%.o $(ARCHIVES)
 	$(link) $(LIBS)
 
 # ---- what people call ------------------------------------------------------------------------------------------------

@@ -11,7 +11,7 @@
 #include <string.h>
 #include <unistd.h>
 
-#include "app/process.h"
+#include "app/process/process.h"
 #include "planner_client.h"
 #include "report.h"
 #include "scenes.h"

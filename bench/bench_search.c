@@ -5,7 +5,7 @@
 #include <string.h>
 #include <time.h>
 
-#include "app/position.h"
+#include "app/config/position.h"
 #include "report.h"
 #include "scenes.h"
 #include "search_scenes.h"

@@ -5,8 +5,8 @@
 #include <stdio.h>
 #include <stdlib.h>
 
-#include "app/colour_file.h"
-#include "app/table_camera.h"
+#include "app/config/colour_file.h"
+#include "app/virtual/table_camera.h"
 #include "hough_cv.h"
 #include "vision/calibration.h"
 #include "vision/capture_cv.h"

@@ -5,7 +5,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include "app/position.h"
+#include "app/config/position.h"
 #include "brute_force.h"
 #include "report.h"
 #include "scenes.h"

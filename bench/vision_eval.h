@@ -2,7 +2,7 @@
 #ifndef BILLIARD_BENCH_VISION_EVAL_H
 #define BILLIARD_BENCH_VISION_EVAL_H
 
-#include "app/config.h"
+#include "app/config/config.h"
 #include "report.h"
 #include "vision/colour.h"
 #include "vision/image_io_cv.h"

@@ -6,8 +6,8 @@
 #include <string.h>
 #include <sys/stat.h>
 
-#include "app/colour_file.h"
-#include "app/overlay.h"
+#include "app/config/colour_file.h"
+#include "app/commands/overlay.h"
 #include "vision_eval.h"
 
 static const double mm = 1000;

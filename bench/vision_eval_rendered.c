@@ -4,8 +4,8 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include "app/colour_file.h"
-#include "app/table_camera.h"
+#include "app/config/colour_file.h"
+#include "app/virtual/table_camera.h"
 #include "vision_eval.h"
 
 static const double mm = 1000, FOUND = 0.015;

@@ -5,7 +5,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include "app/colour_file.h"
+#include "app/config/colour_file.h"
 #include "vision/capture_cv.h"
 #include "vision/stabilise.h"
 #include "vision_eval.h"

@@ -5,11 +5,11 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include "app/bus.h"
-#include "app/config.h"
-#include "app/controller.h"
-#include "app/draw.h"
-#include "app/plan_message.h"
+#include "app/process/bus.h"
+#include "app/config/config.h"
+#include "app/control/controller.h"
+#include "app/light/draw.h"
+#include "app/planner/plan_message.h"
 
 int LLVMFuzzerTestOneInput(const uint8_t *data, size_t size);
 

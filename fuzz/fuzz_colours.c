@@ -5,7 +5,7 @@
 #include <sys/mman.h>
 #include <unistd.h>
 
-#include "app/colour_file.h"
+#include "app/config/colour_file.h"
 
 int LLVMFuzzerTestOneInput(const uint8_t *data, size_t size);
 

@@ -3,7 +3,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include "app/position.h"
+#include "app/config/position.h"
 
 int LLVMFuzzerTestOneInput(const uint8_t *data, size_t size);
 

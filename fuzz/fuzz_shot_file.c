@@ -3,7 +3,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include "app/shot_file.h"
+#include "app/config/shot_file.h"
 
 int LLVMFuzzerTestOneInput(const uint8_t *data, size_t size);
 

@@ -5,7 +5,7 @@
 #include <stdbool.h>
 #include <sys/types.h>
 
-#include "app/bus.h"
+#include "app/process/bus.h"
 
 #define FIXTURE_URL "udpm://239.255.76.67:7667?ttl=0&recv_buf_size=4194304"
 

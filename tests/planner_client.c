@@ -7,7 +7,7 @@
 #include <string.h>
 #include <unistd.h>
 
-#include "app/process.h"
+#include "app/process/process.h"
 
 static char conf[128];
 

@@ -4,7 +4,7 @@
 
 #include <sys/types.h>
 
-#include "app/plan_message.h"
+#include "app/planner/plan_message.h"
 #include "bus_fixture.h"
 
 /* How the planner is to be configured. */

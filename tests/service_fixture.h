@@ -2,7 +2,7 @@
 #ifndef BILLIARD_TESTS_SERVICE_FIXTURE_H
 #define BILLIARD_TESTS_SERVICE_FIXTURE_H
 
-#include "app/config.h"
+#include "app/config/config.h"
 #include "bus_fixture.h"
 
 enum { PROGRAM_COUNT = 5, STATUS_MAX = 16, TEXT_SIZE = 2000 };

@@ -4,7 +4,7 @@
 
 #include <jansson.h>
 
-#include "app/shot_file.h"
+#include "app/config/shot_file.h"
 
 /* One shot of a collection {"tables", "sets", "shots"} as shot_file_parse() takes it. 0 or a negative errno with the reason. */
 int shot_from_collection(const json_t *root, const json_t *shot, struct shot_file *out, char *err, size_t err_size);

@@ -1,4 +1,4 @@
-#include "app/bus.h"
+#include "app/process/bus.h"
 
 #include <arpa/inet.h>
 #include <errno.h>

@@ -1,4 +1,4 @@
-#include "app/cmd.h"
+#include "app/commands/cmd.h"
 
 #include <stdio.h>
 #include <string.h>

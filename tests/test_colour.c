@@ -5,7 +5,7 @@
 #include <string.h>
 #include <unistd.h>
 
-#include "app/colour_file.h"
+#include "app/config/colour_file.h"
 #include "vision_scene.h"
 
 static const float CLOTH[3] = {120, 150, 95};

@@ -1,4 +1,4 @@
-#include "app/config.h"
+#include "app/config/config.h"
 
 #include <errno.h>
 #include <stdio.h>
@@ -6,8 +6,8 @@
 #include <string.h>
 #include <unistd.h>
 
-#include "app/config_table.h"
-#include "app/text_file.h"
+#include "app/config/config_table.h"
+#include "app/config/text_file.h"
 #include "harness.h"
 
 #define THESIS	"config/thesis-table.conf"

@@ -1,11 +1,11 @@
-#include "app/controller.h"
+#include "app/control/controller.h"
 
 #include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 
-#include "app/bus.h"
+#include "app/process/bus.h"
 #include "harness.h"
 
 /* The controller fed with messages as they come from the bus; nothing else is real. 30 frames a second. */

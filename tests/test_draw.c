@@ -3,9 +3,9 @@
 #include <math.h>
 #include <string.h>
 
-#include "app/draw.h"
-#include "app/draw_field.h"
-#include "app/draw_path.h"
+#include "app/light/draw.h"
+#include "app/light/draw_field.h"
+#include "app/light/draw_path.h"
 #include "physics/event.h"
 #include "scenes.h"
 

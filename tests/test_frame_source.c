@@ -1,4 +1,4 @@
-#include "app/frame_source.h"
+#include "app/process/frame_source.h"
 
 #include <dirent.h>
 #include <poll.h>
@@ -7,7 +7,7 @@
 #include <string.h>
 #include <unistd.h>
 
-#include "app/process.h"
+#include "app/process/process.h"
 #include "harness.h"
 
 enum { WIDTH = 64, HEIGHT = 48 };

@@ -1,4 +1,4 @@
-#include "app/fsm.h"
+#include "app/control/fsm.h"
 
 #include <math.h>
 #include <string.h>

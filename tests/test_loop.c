@@ -4,7 +4,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include "app/process.h"
+#include "app/process/process.h"
 #include "harness.h"
 #include "service_fixture.h"
 

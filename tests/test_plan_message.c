@@ -1,4 +1,4 @@
-#include "app/plan_message.h"
+#include "app/planner/plan_message.h"
 
 #include <errno.h>
 #include <math.h>
@@ -6,9 +6,9 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include "app/bus.h"
-#include "app/config.h"
-#include "app/draw.h"
+#include "app/process/bus.h"
+#include "app/config/config.h"
+#include "app/light/draw.h"
 #include "harness.h"
 #include "scenes.h"
 

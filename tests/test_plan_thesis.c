@@ -9,7 +9,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include "app/position.h"
+#include "app/config/position.h"
 
 enum { PATH_SIZE = 512 };
 

@@ -1,4 +1,4 @@
-#include "app/planner_service.h"
+#include "app/planner/planner_service.h"
 
 #include <math.h>
 #include <poll.h>
@@ -6,8 +6,8 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include "app/plan_message.h"
-#include "app/process.h"
+#include "app/planner/plan_message.h"
+#include "app/process/process.h"
 #include "harness.h"
 #include "scenes.h"
 

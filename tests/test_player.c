@@ -5,7 +5,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include "app/player.h"
+#include "app/virtual/player.h"
 #include "scenes.h"
 
 static struct table table;

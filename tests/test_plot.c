@@ -1,4 +1,4 @@
-#include "app/plot.h"
+#include "app/commands/plot.h"
 
 #include <cairo.h>
 #include <errno.h>
@@ -8,8 +8,8 @@
 #include <string.h>
 #include <unistd.h>
 
-#include "app/overlay.h"
-#include "app/text_file.h"
+#include "app/commands/overlay.h"
+#include "app/config/text_file.h"
 #include "harness.h"
 #include "physics/sim.h"
 #include "scenes.h"

@@ -1,4 +1,4 @@
-#include "app/position.h"
+#include "app/config/position.h"
 
 #include <errno.h>
 #include <stdio.h>

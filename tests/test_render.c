@@ -7,8 +7,8 @@
 #include <string.h>
 #include <unistd.h>
 
-#include "app/draw.h"
-#include "app/render.h"
+#include "app/light/draw.h"
+#include "app/light/render.h"
 
 enum { WIDTH = 960, HEIGHT = 540 };
 static billiard_draw_list_t list;

@@ -7,8 +7,8 @@
 #include <string.h>
 #include <unistd.h>
 
-#include "app/plan_message.h"
-#include "app/process.h"
+#include "app/planner/plan_message.h"
+#include "app/process/process.h"
 #include "bus_fixture.h"
 #include "harness.h"
 

@@ -7,9 +7,9 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include "app/draw.h"
-#include "app/plan_message.h"
-#include "app/process.h"
+#include "app/light/draw.h"
+#include "app/planner/plan_message.h"
+#include "app/process/process.h"
 #include "harness.h"
 #include "service_fixture.h"
 #include "vision/image_io_cv.h"

@@ -4,7 +4,7 @@
 #include <stdio.h>
 #include <string.h>
 
-#include "app/config.h"
+#include "app/config/config.h"
 #include "harness.h"
 #include "physics/sim.h"
 #include "scenes.h"

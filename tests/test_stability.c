@@ -1,4 +1,4 @@
-#include "app/stability.h"
+#include "app/control/stability.h"
 
 #include <math.h>
 #include <stdio.h>

@@ -7,7 +7,7 @@
 #include <string.h>
 #include <unistd.h>
 
-#include "app/cmd.h"
+#include "app/commands/cmd.h"
 #include "vision_rig.h"
 
 static const char *const NAME[] = {"markers", "cloth",	 "marks",   "votes",   "seeds",

@@ -1,4 +1,4 @@
-#include "app/supervisor.h"
+#include "app/process/supervisor.h"
 
 #include <errno.h>
 #include <libgen.h>
@@ -10,7 +10,7 @@
 #include <sys/stat.h>
 #include <unistd.h>
 
-#include "app/process.h"
+#include "app/process/process.h"
 #include "harness.h"
 
 /* The supervised programs are scripts beside the test program, where a supervisor looks for them. Each writes a line

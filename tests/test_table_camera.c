@@ -5,7 +5,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include "app/table_camera.h"
+#include "app/virtual/table_camera.h"
 #include "scenes.h"
 #include "vision/markers_cv.h"
 #include "vision/pose.h"

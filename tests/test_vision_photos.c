@@ -5,8 +5,8 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include "app/colour_file.h"
-#include "app/config.h"
+#include "app/config/colour_file.h"
+#include "app/config/config.h"
 #include "vision_scene.h"
 
 struct sums {

@@ -4,7 +4,7 @@
 
 #include <jansson.h>
 
-#include "app/position.h"
+#include "app/config/position.h"
 #include "search/plan.h"
 
 /* Place (from 0) of one entry of such a list ("shots" with angle, speed, potted balls) in ours: angles within 0.2

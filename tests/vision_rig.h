@@ -2,9 +2,9 @@
 #ifndef BILLIARD_TESTS_VISION_RIG_H
 #define BILLIARD_TESTS_VISION_RIG_H
 
-#include "app/colour_file.h"
-#include "app/config.h"
-#include "app/table_camera.h"
+#include "app/config/colour_file.h"
+#include "app/config/config.h"
+#include "app/virtual/table_camera.h"
 #include "vision_scene.h"
 
 struct rig {

@@ -1,0 +1,273 @@
+/* billiard calibrate colours: learns the colour parameters from photographs. */
+#include <errno.h>
+#include <getopt.h>
+#include <math.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "app/commands/cmd.h"
+#include "app/config/colour_file.h"
+#include "vision/image_io_cv.h"
+
+enum { RACK_REDS = 15, OPENING_BALLS = 22 };
+static const double SPOT_REACH = 0.035; /* m from its spot that a colour may lie in the opening position */
+static const double LABEL_REACH = 8;	/* px at 1280 from its label that a ball may be found */
+
+struct options {
+	const char *config, *labels, *out, *without;
+};
+
+/* Balls of known colour, gathered over all photographs. */
+struct samples {
+	struct colour_sample *sample;
+	int count, capacity;
+};
+
+struct learner {
+	struct config config;
+	struct vision *vision;
+	struct image_buffer buffer;
+	struct vision_result result;
+	struct samples samples;
+	json_t *labels;
+};
+
+static void help(void)
+{
+	puts("usage: billiard calibrate colours [-c CONF] [--labels LABELS.json] [-o OUT.json] IMAGE...\n\n"
+	     "  -c, --config CONF       table, default $BILLIARD_CONF or the installed one\n"
+	     "  --labels LABELS.json    a list of {\"image\": \"a.png\", \"classes\": [{\"type\": \"RED\", \"px\": 1, "
+	     "\"py\": 2}, ...]};\n"
+	     "                          an image is found by the end of its path. Without it every photograph must "
+	     "show the\n"
+	     "                          opening position: colours on their spots, fifteen reds, the white ball "
+	     "anywhere\n"
+	     "  --without NAME          leaves out images whose path contains NAME (to judge what was learned)\n"
+	     "  -o, --output OUT.json   default: the colour file of the configuration");
+}
+
+/* CMD_OK; CMD_BAD_INPUT; -1 when --help has answered. */
+static int parse(struct options *options, int argc, char **argv)
+{
+	enum { OPT_LABELS = 256, OPT_WITHOUT };
+	static const struct option table[] = {
+		{"config", required_argument, NULL, 'c'},
+		{"labels", required_argument, NULL, OPT_LABELS},
+		{"without", required_argument, NULL, OPT_WITHOUT},
+		{"output", required_argument, NULL, 'o'},
+		{"help", no_argument, NULL, 'h'},
+		{NULL, 0, NULL, 0},
+	};
+	int c;
+	while ((c = getopt_long(argc, argv, "c:o:h", table, NULL)) != -1) {
+		if (c == 'c')
+			options->config = optarg;
+		else if (c == 'o')
+			options->out = optarg;
+		else if (c == OPT_LABELS)
+			options->labels = optarg;
+		else if (c == OPT_WITHOUT)
+			options->without = optarg;
+		else if (c != 'h')
+			return CMD_BAD_INPUT;
+		else {
+			help();
+			return -1;
+		}
+	}
+	if (optind == argc || strcmp(argv[optind], "colours") != 0)
+		return cmd_usage(argv[0], "wants \"colours\"");
+	if (++optind == argc)
+		return cmd_usage(argv[0], "wants images");
+	return CMD_OK;
+}
+
+static int remember(struct samples *s, const struct colour_sample *sample)
+{
+	if (s->count == s->capacity) {
+		int capacity = s->capacity > 0 ? 2 * s->capacity : 256;
+		struct colour_sample *grown = realloc(s->sample, sizeof *grown * (size_t)capacity);
+		if (!grown)
+			return -ENOMEM;
+		s->sample = grown;
+		s->capacity = capacity;
+	}
+	s->sample[s->count++] = *sample;
+	return 0;
+}
+
+/* ---- which ball has which colour
+ * ------------------------------------------------------------------------------------- */
+
+/* The label file's entry whose image is the end of path. */
+static const json_t *entry_of(const json_t *labels, const char *path)
+{
+	size_t i;
+	const json_t *entry;
+	json_array_foreach((json_t *)labels, i, entry)
+	{
+		const char *image = json_string_value(json_object_get(entry, "image"));
+		size_t n = image ? strlen(image) : 0, m = strlen(path);
+		if (n > 0 && n <= m && strcmp(path + m - n, image) == 0 && (n == m || path[m - n - 1] == '/'))
+			return entry;
+	}
+	return NULL;
+}
+
+static void colours_from_labels(const json_t *classes, const struct vision_result *result, enum ball_colour *out)
+{
+	double reach = LABEL_REACH * result->camera.in.width / 1280;
+	size_t i;
+	const json_t *label;
+	json_array_foreach((json_t *)classes, i, label)
+	{
+		const char *type = json_string_value(json_object_get(label, "type"));
+		enum ball_colour colour;
+		vec2 px = {json_number_value(json_object_get(label, "px")),
+			   json_number_value(json_object_get(label, "py"))};
+		int best = -1;
+		for (int b = 0; b < result->ball_count; b++)
+			if (vec2_dist(result->ball[b].px, px) <
+			    (best < 0 ? reach : vec2_dist(result->ball[best].px, px)))
+				best = b;
+		if (best >= 0 && type && ball_colour_from_name(type, &colour))
+			out[best] = colour;
+	}
+}
+
+/* Six colours on their spots; of the rest, the ball furthest from the others is white. */
+static bool colours_from_opening(const struct table *table, const struct vision_result *result, enum ball_colour *out)
+{
+	int found = 0, white = -1;
+	double far = 0;
+	if (result->ball_count != OPENING_BALLS)
+		return false;
+	for (int b = 0; b < result->ball_count; b++)
+		out[b] = COLOUR_RED;
+	for (int k = COLOUR_YELLOW; k <= COLOUR_BLACK; k++)
+		for (int b = 0; b < result->ball_count; b++)
+			if (out[b] == COLOUR_RED && vec2_dist(result->ball[b].pos, table->spot[k]) < SPOT_REACH) {
+				out[b] = (enum ball_colour)k;
+				found++;
+				break;
+			}
+	for (int b = 0; b < result->ball_count; b++) {
+		double near = INFINITY;
+		for (int o = 0; o < result->ball_count && out[b] == COLOUR_RED; o++)
+			if (o != b && out[o] == COLOUR_RED)
+				near = fmin(near, vec2_dist(result->ball[b].pos, result->ball[o].pos));
+		if (out[b] == COLOUR_RED && near > far) {
+			far = near;
+			white = b;
+		}
+	}
+	if (found != 6 || white < 0)
+		return false;
+	out[white] = COLOUR_WHITE;
+	return true;
+}
+
+/* ---- learning
+ * -------------------------------------------------------------------------------------------------------- */
+
+static int label_balls(const struct learner *l, const char *path, enum ball_colour *colour)
+{
+	const json_t *entry = l->labels ? entry_of(l->labels, path) : NULL;
+	for (int b = 0; b < l->result.ball_count; b++)
+		colour[b] = COLOUR_UNKNOWN;
+	if (entry) {
+		colours_from_labels(json_object_get(entry, "classes"), &l->result, colour);
+		return CMD_OK;
+	}
+	if (l->labels) {
+		printf("%s: no label, left out\n", path);
+		return CMD_OK;
+	}
+	if (!colours_from_opening(&l->config.table, &l->result, colour))
+		return cmd_bad_input("%s: not the opening position (%d balls found); give --labels", path,
+				     l->result.ball_count);
+	return CMD_OK;
+}
+
+static int learn_image(struct learner *l, const char *path)
+{
+	char err[CMD_ERROR_SIZE] = "";
+	struct colour_sample sample[VISION_BALL_MAX];
+	enum ball_colour colour[VISION_BALL_MAX];
+	if (image_read(path, &l->buffer, err, sizeof err) < 0)
+		return cmd_bad_input("%s", err);
+	if (vision_detect(l->vision, &l->buffer.image, &l->result, err, sizeof err) < 0)
+		return cmd_bad_input("%s: %s", path, err);
+	if (l->result.calibration == CALIBRATION_NONE)
+		return cmd_bad_input("%s: not calibrated: %s", path, l->result.reason);
+	int status = label_balls(l, path, colour);
+	if (status != CMD_OK)
+		return status;
+	vision_samples(l->vision, sample);
+	for (int b = 0; b < l->result.ball_count; b++) {
+		sample[b].colour = colour[b];
+		if (colour[b] != COLOUR_UNKNOWN && remember(&l->samples, &sample[b]) < 0)
+			return cmd_bad_input("out of memory");
+	}
+	return CMD_OK;
+}
+
+static int prepare(struct learner *l, const struct options *options)
+{
+	char err[CMD_ERROR_SIZE] = "";
+	json_error_t error;
+	int status = cmd_config(&l->config, options->config);
+	if (status != CMD_OK)
+		return status;
+	if (options->labels) {
+		l->labels = json_load_file(options->labels, 0, &error);
+		if (!l->labels)
+			return cmd_bad_input("%s:%d: %s", options->labels, error.line, error.text);
+		if (!json_is_array(l->labels))
+			return cmd_bad_input("%s:1: a JSON list is wanted", options->labels);
+	}
+	struct vision_def def = config_vision_def(&l->config, NULL);
+	if (vision_create(&l->vision, &def, err, sizeof err) < 0)
+		return cmd_bad_input("%s: %s", l->config.path, err);
+	return CMD_OK;
+}
+
+static int finish(const struct learner *l, const char *path)
+{
+	char err[CMD_ERROR_SIZE] = "";
+	struct colour_model model;
+	if (l->samples.count == 0)
+		return cmd_bad_input("no ball of known colour in these images");
+	if (colour_learn(l->samples.sample, l->samples.count, &model, err, sizeof err) < 0 ||
+	    colour_file_write(path, &model, err, sizeof err) < 0)
+		return cmd_bad_input("%s", err);
+	printf("%s: learned from %d balls:", path, l->samples.count);
+	for (int k = 0; k < COLOUR_CLASSES; k++)
+		printf(" %s %d", ball_colour_name((enum ball_colour)k), model.class[k].samples);
+	puts("");
+	return CMD_OK;
+}
+
+int cmd_calibrate(int argc, char **argv)
+{
+	struct options options = {0};
+	int status = parse(&options, argc, argv);
+	if (status != CMD_OK)
+		return status < 0 ? CMD_OK : status;
+	struct learner *l = calloc(1, sizeof *l);
+	if (!l)
+		return cmd_bad_input("out of memory");
+	status = prepare(l, &options);
+	for (int i = optind; i < argc && status == CMD_OK; i++)
+		if (!options.without || !strstr(argv[i], options.without))
+			status = learn_image(l, argv[i]);
+	if (status == CMD_OK)
+		status = finish(l, options.out ? options.out : l->config.colours);
+	vision_destroy(l->vision);
+	image_buffer_finish(&l->buffer);
+	json_decref(l->labels);
+	free(l->samples.sample);
+	free(l);
+	return status;
+}

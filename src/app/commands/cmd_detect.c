@@ -1,0 +1,235 @@
+/* billiard detect: balls in photographs. */
+#include <errno.h>
+#include <getopt.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+#include <sys/stat.h>
+#include <time.h>
+
+#include "app/commands/cmd.h"
+#include "app/config/colour_file.h"
+#include "app/commands/overlay.h"
+#include "vision/image_io_cv.h"
+#include "vision/stages.h"
+
+static const double mm = 1000; /* in a metre */
+
+struct options {
+	const char *config, *overlay, *dump;
+	bool json;
+};
+
+struct detector {
+	struct config config;
+	struct colour_model colours;
+	struct vision *vision;
+	struct image_buffer buffer;
+	struct vision_result result;
+};
+
+static void help(void)
+{
+	puts("usage: billiard detect [-c CONF] [--json] [--overlay OUT.png] [--dump DIR] IMAGE...\n\n"
+	     "  -c, --config CONF  table, default $BILLIARD_CONF or the installed one\n"
+	     "  --json             one JSON object per image\n"
+	     "  --overlay OUT.png  the photograph with what was found in it (one image only)\n"
+	     "  --dump DIR         one picture per stage, DIR/01-markers.png and on (one image only)\n"
+	     "Images that cannot be read are named on stderr and give status 2; the others are done all the same.");
+}
+
+/* CMD_OK; CMD_BAD_INPUT; -1 when --help has answered. */
+static int parse(struct options *options, int argc, char **argv)
+{
+	enum { OPT_JSON = 256, OPT_OVERLAY, OPT_DUMP };
+	static const struct option table[] = {
+		{"config", required_argument, NULL, 'c'},
+		{"json", no_argument, NULL, OPT_JSON},
+		{"overlay", required_argument, NULL, OPT_OVERLAY},
+		{"dump", required_argument, NULL, OPT_DUMP},
+		{"help", no_argument, NULL, 'h'},
+		{NULL, 0, NULL, 0},
+	};
+	int c;
+	while ((c = getopt_long(argc, argv, "c:h", table, NULL)) != -1) {
+		if (c == 'c')
+			options->config = optarg;
+		else if (c == OPT_JSON)
+			options->json = true;
+		else if (c == OPT_OVERLAY)
+			options->overlay = optarg;
+		else if (c == OPT_DUMP)
+			options->dump = optarg;
+		else if (c != 'h')
+			return CMD_BAD_INPUT;
+		else {
+			help();
+			return -1;
+		}
+	}
+	if (optind == argc)
+		return cmd_usage(argv[0], "wants images");
+	if (options->overlay && optind != argc - 1)
+		return cmd_usage(argv[0], "--overlay takes one image");
+	if (options->dump && optind != argc - 1)
+		return cmd_usage(argv[0], "--dump takes one image");
+	return CMD_OK;
+}
+
+static int prepare(struct detector *detector, const struct options *options)
+{
+	char err[CMD_ERROR_SIZE] = "";
+	int status = cmd_config(&detector->config, options->config);
+	if (status != CMD_OK)
+		return status;
+	if (colour_file_read(detector->config.colours, &detector->colours, err, sizeof err) < 0)
+		return cmd_bad_input("%s", err);
+	struct vision_def def = config_vision_def(&detector->config, &detector->colours);
+	if (vision_create(&detector->vision, &def, err, sizeof err) < 0)
+		return cmd_bad_input("%s: %s", detector->config.path, err[0] ? err : "out of memory");
+	return CMD_OK;
+}
+
+/* ---- output ------------------------------------------------------------------------------------------------------ */
+
+static int print_json(const char *image, const struct vision_result *result, double ms)
+{
+	json_t *balls = json_array();
+	for (int i = 0; i < result->ball_count; i++) {
+		const struct vision_ball *b = &result->ball[i];
+		json_array_append_new(balls,
+				      json_pack("{s:s, s:f, s:f, s:f, s:f, s:f}", "type", ball_colour_name(b->colour),
+						"x", b->pos.x * mm, "y", b->pos.y * mm, "px", b->px.x, "py", b->px.y,
+						"confidence", b->confidence));
+	}
+	bool calibrated = result->calibration != CALIBRATION_NONE;
+	json_t *line = json_object();
+	json_t *name = json_string(image);
+	json_object_set_new(line, "image", name ? name : json_string("(a name that is not UTF-8)"));
+	json_object_set_new(line, "calibrated", json_boolean(calibrated));
+	if (calibrated)
+		json_object_set_new(line, "residual_px", json_real(result->residual_px));
+	else
+		json_object_set_new(line, "reason", json_string(result->reason));
+	json_object_set_new(line, "occluded", json_boolean(result->occluded));
+	json_object_set_new(line, "ms", json_real(ms));
+	json_object_set_new(line, "balls", balls);
+	return cmd_json_line(line);
+}
+
+static int print_table(const char *image, const struct vision_result *result, double ms)
+{
+	if (result->calibration == CALIBRATION_NONE)
+		printf("%s: not calibrated: %s\n", image, result->reason);
+	else
+		printf("%s: %d balls, %.1f ms, %d markers, residual %.2f px = %.2f mm%s\n", image, result->ball_count,
+		       ms, result->markers_seen, result->residual_px, result->residual * mm,
+		       result->occluded ? ", something covers the table" : "");
+	for (int i = 0; i < result->ball_count; i++) {
+		const struct vision_ball *b = &result->ball[i];
+		printf("  %-8s %8.1f %8.1f mm  %7.1f %7.1f px  confidence %.2f\n", ball_colour_name(b->colour),
+		       b->pos.x * mm, b->pos.y * mm, b->px.x, b->px.y, b->confidence);
+	}
+	return ferror(stdout) ? CMD_FAILED : CMD_OK;
+}
+
+/* ---- pictures of the stages -------------------------------------------------------------------------------------- */
+
+struct dump {
+	const char *folder;
+	int count;
+	char err[CMD_ERROR_SIZE]; /* of the first that could not be written */
+};
+
+static void dump_stage(void *user, const char *name, const struct image *image)
+{
+	struct dump *dump = user;
+	char path[CMD_ERROR_SIZE - 32];
+	if (dump->err[0] != '\0')
+		return;
+	int length = snprintf(path, sizeof path, "%s/%02d-%s.png", dump->folder, ++dump->count, name);
+	if (length < 0 || (size_t)length >= sizeof path)
+		snprintf(dump->err, sizeof dump->err, "--dump: a name too long");
+	else if (!image)
+		snprintf(dump->err, sizeof dump->err, "%s: out of memory", path);
+	else
+		image_write_png(image, path, dump->err, sizeof dump->err);
+}
+
+/* Detects once more, so that the time of the first is not that of drawing. */
+static int write_stages(struct detector *detector, const char *folder)
+{
+	char err[CMD_ERROR_SIZE] = "";
+	struct dump dump = {.folder = folder};
+	struct stage_watch watch = {dump_stage, &dump};
+	if (mkdir(folder, 0777) < 0 && errno != EEXIST)
+		return cmd_bad_input("%s: %s", folder, strerror(errno));
+	vision_watch(detector->vision, &watch);
+	int rc = vision_detect(detector->vision, &detector->buffer.image, &detector->result, err, sizeof err);
+	vision_watch(detector->vision, NULL);
+	if (rc < 0 || dump.err[0] != '\0')
+		return cmd_bad_input("%s", rc < 0 ? err : dump.err);
+	return CMD_OK;
+}
+
+/* ---- one image --------------------------------------------------------------------------------------------------- */
+
+static double now_ms(void)
+{
+	struct timespec t;
+	clock_gettime(CLOCK_MONOTONIC, &t);
+	return (double)t.tv_sec * 1e3 + (double)t.tv_nsec * 1e-6;
+}
+
+static int write_overlay(const struct detector *detector, const char *path)
+{
+	char err[CMD_ERROR_SIZE];
+	struct vision_refusal refused[OVERLAY_REFUSED_MAX];
+	int count = vision_refusals(detector->vision, refused, OVERLAY_REFUSED_MAX);
+	struct overlay overlay = {.frame = &detector->buffer.image,
+				  .table = &detector->config.table,
+				  .result = &detector->result,
+				  .refused = refused,
+				  .refused_count = count < OVERLAY_REFUSED_MAX ? count : OVERLAY_REFUSED_MAX};
+	return overlay_write(&overlay, path, err, sizeof err) < 0 ? cmd_bad_input("%s", err) : CMD_OK;
+}
+
+static int detect(struct detector *detector, const struct options *options, const char *path)
+{
+	char err[CMD_ERROR_SIZE] = "";
+	if (image_read(path, &detector->buffer, err, sizeof err) < 0)
+		return cmd_bad_input("%s", err);
+	double begin = now_ms();
+	int code = vision_detect(detector->vision, &detector->buffer.image, &detector->result, err, sizeof err);
+	double ms = now_ms() - begin;
+	if (code < 0)
+		return cmd_bad_input("%s: %s", path, err);
+	if (options->dump && write_stages(detector, options->dump) != CMD_OK)
+		return CMD_BAD_INPUT;
+	int status = options->overlay ? write_overlay(detector, options->overlay) : CMD_OK;
+	if (status != CMD_OK)
+		return status;
+	return options->json ? print_json(path, &detector->result, ms) : print_table(path, &detector->result, ms);
+}
+
+int cmd_detect(int argc, char **argv)
+{
+	struct options options = {0};
+	int status = parse(&options, argc, argv);
+	if (status != CMD_OK)
+		return status < 0 ? CMD_OK : status;
+	struct detector *detector = calloc(1, sizeof *detector);
+	if (!detector)
+		return cmd_bad_input("%s: out of memory", argv[0]);
+	status = prepare(detector, &options);
+	if (status == CMD_OK) {
+		for (int i = optind; i < argc; i++) {
+			int one = detect(detector, &options, argv[i]);
+			status = one > status ? one : status;
+		}
+	}
+	vision_destroy(detector->vision);
+	image_buffer_finish(&detector->buffer);
+	free(detector);
+	return status;
+}

@@ -1,0 +1,139 @@
+/* billiard-infinity: the controller. Thinks in controller.c; here is the bus around it. */
+#include <stdio.h>
+#include <string.h>
+
+#include "app/control/controller.h"
+#include "app/process/process.h"
+
+enum { TICK_US = 100000, REPEAT_US = 1000000 };
+
+struct infinity {
+	struct process process;
+	struct config config;
+	struct controller controller;
+	int64_t draw_seq;
+};
+
+static double now(void)
+{
+	return process_seconds(NULL);
+}
+
+static void send_draw(struct infinity *p)
+{
+	p->controller.draw.utime = process_utime();
+	p->controller.draw.seq = ++p->draw_seq;
+	bus_publish(p->process.bus, "DRAW", &bus_draw_list, &p->controller.draw);
+}
+
+static void send_animation(struct infinity *p)
+{
+	bus_publish(p->process.bus, "ANIMATION", &bus_animation, &p->controller.animation);
+}
+
+static void send_cancel(struct infinity *p, int64_t id)
+{
+	char text[32];
+	billiard_command_t command = {.utime = process_utime()};
+	snprintf(text, sizeof text, "%lld", (long long)id);
+	bus_set_text(command.name, sizeof command.name, "cancel");
+	bus_set_text(command.target, sizeof command.target, "billiard-planner");
+	bus_set_text(command.argument, sizeof command.argument, text);
+	bus_publish(p->process.bus, "COMMAND", &bus_command, &command);
+}
+
+/* Sends what the controller wants sent, in the order that keeps the table dark while it plans. */
+static void flush(struct infinity *p)
+{
+	struct controller_output out = p->controller.output;
+	p->controller.output = (struct controller_output){0};
+	if (out.cancel)
+		send_cancel(p, out.cancel_id);
+	if (out.request) {
+		p->controller.request.utime = process_utime();
+		bus_publish(p->process.bus, "PLAN_REQUEST", &bus_plan_request, &p->controller.request);
+	}
+	if (out.draw)
+		send_draw(p);
+	if (out.animation) {
+		p->controller.animation.utime = process_utime();
+		send_animation(p);
+	}
+	process_state(&p->process, "%s", fsm_state_name(p->controller.fsm.state));
+}
+
+static bool on_table_state(void *context, const void *message)
+{
+	struct infinity *p = context;
+	bool ok = controller_state(&p->controller, message, now());
+	flush(p);
+	return ok;
+}
+
+static bool on_plan(void *context, const void *message)
+{
+	struct infinity *p = context;
+	bool ok = controller_plan(&p->controller, message, now());
+	flush(p);
+	return ok;
+}
+
+static bool on_command(void *context, const void *message)
+{
+	struct infinity *p = context;
+	bool ok = controller_command(&p->controller, message, now());
+	flush(p);
+	return ok;
+}
+
+static int on_tick(sd_event_source *source, uint64_t usec, void *context)
+{
+	(void)source, (void)usec;
+	struct infinity *p = context;
+	controller_tick(&p->controller, now());
+	flush(p);
+	return 0;
+}
+
+static int on_repeat(sd_event_source *source, uint64_t usec, void *context)
+{
+	(void)source, (void)usec;
+	send_draw(context);
+	send_animation(context);
+	return 0;
+}
+
+static void describe(void *context, struct process *process)
+{
+	struct infinity *p = context;
+	process_metric(process, "proposals", "1", (double)p->controller.proposals);
+	process_metric(process, "balls", "1", p->controller.seen.count);
+}
+
+static int setup(struct infinity *p, const struct process_options *options)
+{
+	int r = process_init(&p->process, "billiard-infinity", options, &p->config);
+	if (r < 0)
+		return r;
+	controller_init(&p->controller, &p->config);
+	p->process.describe = describe;
+	p->process.context = p;
+	if ((r = bus_subscribe(p->process.bus, "TABLE_STATE", &bus_table_state, BUS_EACH, on_table_state, p)) < 0 ||
+	    (r = bus_subscribe(p->process.bus, "PLAN", &bus_plan, BUS_EACH, on_plan, p)) < 0 ||
+	    (r = bus_subscribe(p->process.bus, "COMMAND", &bus_command, BUS_EACH, on_command, p)) < 0 ||
+	    (r = process_every(&p->process, TICK_US, on_tick, p)) < 0 || (r = process_every(&p->process, REPEAT_US, on_repeat, p)) < 0)
+		fprintf(stderr, "billiard-infinity: %s\n", strerror(-r));
+	return r;
+}
+
+int main(int argc, char **argv)
+{
+	struct process_options options;
+	int r = process_parse(&options, "billiard-infinity", argc, argv);
+	if (r != 0)
+		return r < 0 ? 2 : 0;
+	struct infinity p = {0};
+	int status = setup(&p, &options) < 0 ? 2 : process_run(&p.process);
+	process_finish(&p.process);
+	return status;
+}
