@@ -13,8 +13,8 @@
 
 int LLVMFuzzerTestOneInput(const uint8_t *data, size_t size);
 
-static const struct bus_type *const types[] = {&bus_image, &bus_table_state, &bus_plan_request, &bus_plan, &bus_draw_list, &bus_animation,
-					       &bus_command, &bus_status};
+static const struct bus_type *const types[] = {&bus_image,     &bus_table_state, &bus_plan_request, &bus_plan,
+					       &bus_draw_list, &bus_animation,	 &bus_command,	    &bus_status};
 static struct config config;
 static struct controller controller;
 

@@ -10,9 +10,9 @@
 int shot_from_collection(const json_t *root, const json_t *shot, struct shot_file *out, char *err, size_t err_size);
 
 struct shot_comparison {
-	bool same;		/* every event, in the same order; what lies within 2e-6 s may swap */
-	double time;		/* s, of the first event that differs */
-	double dt, dpos;	/* s, m: largest differences over the equal events */
+	bool same;	 /* every event, in the same order; what lies within 2e-6 s may swap */
+	double time;	 /* s, of the first event that differs */
+	double dt, dpos; /* s, m: largest differences over the equal events */
 };
 
 /* Simulates and compares with the recorded events, the first `most` of them (0: all). */

@@ -29,7 +29,8 @@ START_TEST(every_state_is_reached_from_the_first)
 {
 	bool reached[FSM_STATE_COUNT] = {[FSM_BLIND] = true};
 	for (int round = 0; round < FSM_STATE_COUNT; round++)
-		FOR_ALL_CELLS(s, e) {
+		FOR_ALL_CELLS(s, e)
+		{
 			enum fsm_state next;
 			if (!reached[s])
 				continue;
@@ -46,7 +47,8 @@ START_TEST(planning_is_reached_from_every_state)
 {
 	bool leads[FSM_STATE_COUNT] = {[FSM_PLANNING] = true};
 	for (int round = 0; round < FSM_STATE_COUNT; round++)
-		FOR_ALL_CELLS(s, e) {
+		FOR_ALL_CELLS(s, e)
+		{
 			enum fsm_state next;
 			step(s, e, &next);
 			leads[s] = leads[s] || leads[next];
@@ -58,7 +60,8 @@ END_TEST
 
 START_TEST(unwritten_cells_change_nothing)
 {
-	FOR_ALL_CELLS(s, e) {
+	FOR_ALL_CELLS(s, e)
+	{
 		struct fsm fsm = at(s);
 		unsigned actions = fsm_step(&fsm, e, 11);
 		if (fsm_written(s, e))
@@ -71,7 +74,8 @@ END_TEST
 
 START_TEST(planning_is_entered_only_with_a_request)
 {
-	FOR_ALL_CELLS(s, e) {
+	FOR_ALL_CELLS(s, e)
+	{
 		enum fsm_state next;
 		unsigned actions = step(s, e, &next);
 		if (fsm_written(s, e) && next == FSM_PLANNING)
@@ -87,7 +91,8 @@ END_TEST
 
 START_TEST(planning_is_left_without_an_answer_only_with_a_cancel)
 {
-	FOR_ALL_CELLS(s, e) {
+	FOR_ALL_CELLS(s, e)
+	{
 		enum fsm_state next;
 		unsigned actions = step(s, e, &next);
 		bool answer = e == FSM_READY || e == FSM_NONE,
@@ -102,7 +107,8 @@ END_TEST
  */
 START_TEST(a_proposal_never_stays_on_a_table_that_changed)
 {
-	FOR_ALL_CELLS(s, e) {
+	FOR_ALL_CELLS(s, e)
+	{
 		enum fsm_state next;
 		unsigned actions = step(s, e, &next);
 		if (s == FSM_SHOWING && next != FSM_SHOWING)
@@ -146,7 +152,8 @@ END_TEST
 
 START_TEST(only_waiting_states_time_out)
 {
-	FOR_ALL_CELLS(s, e) {
+	FOR_ALL_CELLS(s, e)
+	{
 		struct fsm fsm = at(s);
 		double left = fsm_timeout(&fsm, 5, 12);
 		ck_assert_msg(fsm_written(s, FSM_TIMEOUT) == isfinite(left), "%s", fsm_state_name(s));

@@ -10,7 +10,7 @@
 enum { ITEMS = 1000 };
 
 struct tally {
-	int seen[ITEMS];	/* each written by whoever has the item */
+	int seen[ITEMS]; /* each written by whoever has the item */
 	atomic_int busy[PLAN_WORKERS_MAX];
 	atomic_int wrong;
 	int workers;

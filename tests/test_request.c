@@ -35,22 +35,54 @@ static void spoil(struct random *random, struct plan_request *request)
 {
 	struct ball *ball = &request->ball[random_u64(random) % BALL_MAX];
 	switch (random_u64(random) % 16) {
-	case 0: request->ball_count = wild_int(random); break;
-	case 1: request->depth = wild_int(random); break;
-	case 2: request->rails = wild_int(random); break;
-	case 3: request->balls = wild_int(random); break;
-	case 4: request->speeds = wild_int(random); break;
-	case 5: request->plans = wild_int(random); break;
-	case 6: request->tolerances = wild_int(random); break;
-	case 7: request->target = (enum plan_target_kind)(random_u64(random) % 6); break;
-	case 8: request->target_colour = (enum ball_colour)(random_u64(random) % 12); break;
-	case 9: request->target_ball = wild_int(random); break;
-	case 10: request->state.on = (enum rules_on)(random_u64(random) % 6); break;
-	case 11: request->state.in_hand = true; break;
-	case 12: ball->pos.x = wild_double(random); break;
-	case 13: ball->pos.y = wild_double(random); break;
-	case 14: ball->colour = (enum ball_colour)(random_u64(random) % 12); break;
-	default: ball->phase = (enum ball_phase)(random_u64(random) % 5); break;
+	case 0:
+		request->ball_count = wild_int(random);
+		break;
+	case 1:
+		request->depth = wild_int(random);
+		break;
+	case 2:
+		request->rails = wild_int(random);
+		break;
+	case 3:
+		request->balls = wild_int(random);
+		break;
+	case 4:
+		request->speeds = wild_int(random);
+		break;
+	case 5:
+		request->plans = wild_int(random);
+		break;
+	case 6:
+		request->tolerances = wild_int(random);
+		break;
+	case 7:
+		request->target = (enum plan_target_kind)(random_u64(random) % 6);
+		break;
+	case 8:
+		request->target_colour = (enum ball_colour)(random_u64(random) % 12);
+		break;
+	case 9:
+		request->target_ball = wild_int(random);
+		break;
+	case 10:
+		request->state.on = (enum rules_on)(random_u64(random) % 6);
+		break;
+	case 11:
+		request->state.in_hand = true;
+		break;
+	case 12:
+		ball->pos.x = wild_double(random);
+		break;
+	case 13:
+		ball->pos.y = wild_double(random);
+		break;
+	case 14:
+		ball->colour = (enum ball_colour)(random_u64(random) % 12);
+		break;
+	default:
+		ball->phase = (enum ball_phase)(random_u64(random) % 5);
+		break;
 	}
 }
 

@@ -30,14 +30,15 @@ struct planner_def planner_def_default(void)
 /* Bytes that are not for open nodes; the same for any number of workers, so that the room for nodes is. */
 static size_t fixed_memory(void)
 {
-	return sizeof(struct planner) + (PLAN_WORKERS_MAX + 1) * sizeof(struct workspace) + BATCH * sizeof(struct slot) +
-	       STATES_MAX * sizeof(struct state) + (PLAN_SHOTS_MAX + 1) * sizeof(struct solutions) + PLAN_MAX * sizeof(struct plan);
+	return sizeof(struct planner) + (PLAN_WORKERS_MAX + 1) * sizeof(struct workspace) +
+	       BATCH * sizeof(struct slot) + STATES_MAX * sizeof(struct state) +
+	       (PLAN_SHOTS_MAX + 1) * sizeof(struct solutions) + PLAN_MAX * sizeof(struct plan);
 }
 
 static int take_memory(struct planner *planner)
 {
 	bool batches = planner->def.scheme == SCHEME_BATCH;
-	int workers = planner->def.workers + !batches;	/* the manager works along where a search needs batches */
+	int workers = planner->def.workers + !batches; /* the manager works along where a search needs batches */
 	size_t bytes = planner->def.memory - fixed_memory();
 	planner->work = calloc((size_t)workers, sizeof *planner->work);
 	planner->slot = calloc(BATCH, sizeof *planner->slot);
@@ -137,7 +138,8 @@ void planner_export(struct planner *planner, int limit, struct plan_result *resu
 }
 
 /* At most limit of them. True when more are to be worked on. */
-static bool run_batches(struct planner *planner, int limit, plan_progress_fn *progress, void *context, struct plan_result *result)
+static bool run_batches(struct planner *planner, int limit, plan_progress_fn *progress, void *context,
+			struct plan_result *result)
 {
 	bool improved, more = true;
 	show_begin(planner);
@@ -155,7 +157,8 @@ static bool run_batches(struct planner *planner, int limit, plan_progress_fn *pr
 
 static void search(struct planner *planner, plan_progress_fn *progress, void *context, struct plan_result *result)
 {
-	double budget = planner->request->budget.seconds, begin = budget > 0 ? planner->def.now(planner->def.now_context) : 0;
+	double budget = planner->request->budget.seconds,
+	       begin = budget > 0 ? planner->def.now(planner->def.now_context) : 0;
 	double share = 1;
 	if (planner->def.profile.rank_by_success)
 		share -= RANKING_SHARE;
@@ -187,7 +190,8 @@ int planner_run(struct planner *planner, const struct plan_request *request, pla
 	atomic_store_explicit(&planner->cancel, false, memory_order_relaxed);
 	planner->request = request;
 	search(planner, progress, context, result);
-	planner_export(planner, search_is_cancelled(planner) ? planner->def.progress_plans : planner->def.result_plans, result);
+	planner_export(planner, search_is_cancelled(planner) ? planner->def.progress_plans : planner->def.result_plans,
+		       result);
 	planner->request = NULL;
 	if (!atomic_load_explicit(&planner->cancel, memory_order_relaxed))
 		return 0;

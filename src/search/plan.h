@@ -97,7 +97,7 @@ enum plan_status { PLAN_OK, PLAN_NONE, PLAN_CANCELLED };
 struct plan_result {
 	enum plan_status status;
 	int plan_count;	   /* best first */
-	int found; /* plan_count, and what the limits of the definition left out */
+	int found;	   /* plan_count, and what the limits of the definition left out */
 	struct plan *plan; /* owned by the planner, valid until its next run */
 	uint64_t nodes, sims;
 	uint64_t tried, landed, refined; /* shots simulated at the mirror's aim; those that did as meant; those that did
@@ -114,8 +114,8 @@ struct planner_def {
 	enum plan_scheme scheme; /* default SCHEME_BATCH */
 	double sync_period,
 		sync_window; /* s, k and n of thesis 4.7, for SCHEME_WINDOWS; needs (workers + 1) n <= k and def.now */
-	int progress_plans; /* at most so many plans are filled in for plan_progress_fn and when cancelled; 0: all */
-	int result_plans;   /* the same for what planner_run returns */
+	int progress_plans;  /* at most so many plans are filled in for plan_progress_fn and when cancelled; 0: all */
+	int result_plans;    /* the same for what planner_run returns */
 	size_t memory;	     /* bytes for nodes, default 32 MB; schemes with queues of their own take as much again */
 	double (*now)(void *context); /* s, monotonic, for budget.seconds; NULL: time budgets are refused */
 	void *now_context;

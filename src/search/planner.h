@@ -9,7 +9,7 @@
 #include "search/shot.h"
 
 enum {
-	BATCH = 32, /* nodes worked on at a time: never depends on the number of workers, so that results do not */
+	BATCH = 32,	 /* nodes worked on at a time: never depends on the number of workers, so that results do not */
 	FIRST_BATCH = 8, /* the same in the first slice, where the first answer is looked for */
 	RANKED_MAX = 64, /* plans whose success is found when a profile ranks by it */
 	SPEEDS_MAX = 32, /* start speeds of one candidate */
@@ -18,7 +18,7 @@ enum {
 	AIMS_MAX = 10, /* aims at a pocket: up to 9 points of it, and along a cushion */
 	ROOTS_MAX = POCKET_MAX * AIMS_MAX,
 	SAFETY_STEP = 4,	      /* after so many batches without a proposal a simple contact is proposed */
-	FIRST_SLICE = 8, /* batches that the caller works on alone, without waking anybody */
+	FIRST_SLICE = 8,	      /* batches that the caller works on alone, without waking anybody */
 	SAFETY_LIST = PLAN_SHOTS_MAX, /* place of the contact shot among the lists of solutions */
 	NO_STATE = -1
 };

@@ -20,14 +20,14 @@ struct pool_thread {
 struct pool {
 	pthread_mutex_t lock;
 	pthread_cond_t begin, end;
-	uint64_t round;		/* under lock, as are running and stop */
-	int running;		/* threads still in this round */
+	uint64_t round; /* under lock, as are running and stop */
+	int running;	/* threads still in this round */
 	bool stop;
-	atomic_int next;	/* item to claim */
-	int count;		/* of this round; written under lock before it begins */
+	atomic_int next; /* item to claim */
+	int count;	 /* of this round; written under lock before it begins */
 	pool_fn *fn;
 	void *context;
-	int thread_count;	/* without the caller */
+	int thread_count; /* without the caller */
 	struct pool_thread thread[PLAN_WORKERS_MAX];
 };
 

@@ -149,7 +149,8 @@ bool shot_refine(const struct planner *planner, struct slot *slot, struct worksp
 	struct aiming aiming = {.planner = planner, .slot = slot, .work = work, .record = record, .outcome = outcome};
 	candidate_goals(&planner->state[slot->node.state].scene, &slot->node, aiming.goal);
 	double angle = record->shot.angle;
-	for (int i = 0; i < FASTER_MAX && record->shot.speed <= fmin(planner->def.profile.max_speed, SHOT_SPEED_MAX); i++) {
+	for (int i = 0; i < FASTER_MAX && record->shot.speed <= fmin(planner->def.profile.max_speed, SHOT_SPEED_MAX);
+	     i++) {
 		struct miss miss = aim_and_look(&aiming, angle);
 		if (miss.stage < 0)
 			return false;

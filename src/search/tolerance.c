@@ -76,7 +76,7 @@ void tolerance_find(const struct planner *planner, const struct state *state, st
 	trial.speed = true;
 	double faster = reach(&trial, 1, 0.01, 0.5), slower = reach(&trial, -1, 0.01, 0.5);
 	if (search_is_over(planner))
-		return;	/* what was found is cut short: it stays unknown */
+		return; /* what was found is cut short: it stays unknown */
 	record->tolerance_angle = fmin(left, right);
 	record->tolerance_speed = fmin(faster, slower);
 	record->success = within(right, left, profile->sigma_angle) * within(slower, faster, profile->sigma_speed);

@@ -14,7 +14,7 @@ static const double FLOOR = 6;	   /* levels added before a logarithm: noise of b
 /* Spread added to every class, as standard deviations: light that differs from what was learned. */
 static const double SPREAD[F] = {0.10, 0.10, 0.10, 0.10, 0.10, 0.05};
 static const double POOLED_SHARE = 0.05; /* of the classes' common covariance in each class' own */
-static const double SCALE_FLOOR = 0.01; /* least spread of the apparent radius */
+static const double SCALE_FLOOR = 0.01;	 /* least spread of the apparent radius */
 static const double UNKNOWN_DISTANCE = 9;
 
 /* ---- measuring

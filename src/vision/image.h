@@ -7,9 +7,9 @@
 
 /* 8-bit BGR, rows from the top, stride in bytes >= 3 width. */
 struct image {
-	uint8_t *data;		/* borrowed */
-	int width, height;	/* px */
-	ptrdiff_t stride;	/* bytes */
+	uint8_t *data;	   /* borrowed */
+	int width, height; /* px */
+	ptrdiff_t stride;  /* bytes */
 };
 
 #endif

@@ -20,9 +20,9 @@
 #include "vision/capture_cv.h"
 #include "vision/image_io_cv.h"
 
-static const double PICTURE_DELAY = 0.4;	/* s from a drawn proposal until its light is in the camera's picture */
-static const double LAST_STATUS = 1.5;		/* s after the last photograph: figures are told once a second */
-static const double GIVE_UP = 30;		/* s without a new proposal */
+static const double PICTURE_DELAY = 0.4; /* s from a drawn proposal until its light is in the camera's picture */
+static const double LAST_STATUS = 1.5;	 /* s after the last photograph: figures are told once a second */
+static const double GIVE_UP = 30;	 /* s without a new proposal */
 static const double RADIAN_DEG = 57.29577951308232;
 enum { TICK_US = 50000, TEXT_SIZE = 256 };
 
@@ -36,23 +36,23 @@ struct demo {
 	struct config config;
 	struct demo_options options;
 	struct supervisor supervisor;
-	struct byte_buffer camera;		/* newest CAMERA picture, JPEG */
+	struct byte_buffer camera; /* newest CAMERA picture, JPEG */
 	int64_t camera_utime;
 	billiard_table_state_t seen, truth;
 	billiard_plan_t plan;
 	bool has_truth;
-	int64_t rest_utime;			/* us, when the balls were last seen to come to rest */
-	int64_t shown_id;			/* proposal on the table */
-	double shown_at;			/* s, when it was first drawn; 0: its pictures are kept */
+	int64_t rest_utime; /* us, when the balls were last seen to come to rest */
+	int64_t shown_id;   /* proposal on the table */
+	double shown_at;    /* s, when it was first drawn; 0: its pictures are kept */
 	int64_t shown_utime;
 	int proposals, played, failed;
-	int bad;				/* photographs that could not be read */
+	int bad; /* photographs that could not be read */
 	bool shot_runs;
-	billiard_table_state_t before;		/* truth when the shot began */
-	char fell[TEXT_SIZE];			/* balls that fell in the running shot */
-	char picture[TEXT_SIZE];		/* photograph shown, from billiard-vision's status */
-	double last_progress;			/* s */
-	double source_ended;			/* s, 0 not yet */
+	billiard_table_state_t before; /* truth when the shot began */
+	char fell[TEXT_SIZE];	       /* balls that fell in the running shot */
+	char picture[TEXT_SIZE];       /* photograph shown, from billiard-vision's status */
+	double last_progress;	       /* s */
+	double source_ended;	       /* s, 0 not yet */
 	int status;
 };
 
@@ -231,7 +231,8 @@ static bool on_draw(void *context, const void *message)
 /* A figure of that name, 0 when there is none. */
 static double metric(const billiard_status_t *status, const char *name)
 {
-	for (int i = 0; i < status->metric_count && i < (int)(sizeof status->metrics / sizeof status->metrics[0]); i++) {
+	for (int i = 0; i < status->metric_count && i < (int)(sizeof status->metrics / sizeof status->metrics[0]);
+	     i++) {
 		char text[sizeof status->metrics[i].name];
 		bus_text(text, sizeof text, status->metrics[i].name, sizeof status->metrics[i].name);
 		if (strcmp(text, name) == 0)
@@ -349,9 +350,14 @@ static int start_services(struct demo *d, char *err, size_t err_size)
 {
 	char *position = d->options.position ? option_text("--position %s", d->options.position) : NULL;
 	char *photographs = d->options.input ? option_text("--hold 4 --source dir:%s", d->options.input) : NULL;
-	const struct { const char *name, *arguments; bool wanted; } services[] = {
-		{"billiard-planner", "", true},	 {"billiard-projector", "", true},
-		{"billiard-infinity", "", true}, {"billiard-vision", photographs ? photographs : "--source lcm:CAMERA", true},
+	const struct {
+		const char *name, *arguments;
+		bool wanted;
+	} services[] = {
+		{"billiard-planner", "", true},
+		{"billiard-projector", "", true},
+		{"billiard-infinity", "", true},
+		{"billiard-vision", photographs ? photographs : "--source lcm:CAMERA", true},
 		{"billiard-table", position ? position : "", !d->options.input},
 	};
 	int r = 0;
@@ -392,7 +398,10 @@ static int run(struct demo *d)
 	int status = process_run(&d->process);
 	int wanted = d->options.input ? 1 : d->options.shots;
 	int got = d->options.input ? d->proposals : d->played;
-	printf("%d proposals%s, %d pictures failed", d->proposals, d->options.input ? "" : d->played == d->options.shots ? ", all played" : "",
+	printf("%d proposals%s, %d pictures failed", d->proposals,
+	       d->options.input		       ? ""
+	       : d->played == d->options.shots ? ", all played"
+					       : "",
 	       d->failed);
 	if (d->bad)
 		printf(", %d photographs could not be read", d->bad);
@@ -404,9 +413,12 @@ static int run(struct demo *d)
 
 static int parse(struct demo_options *o, int argc, char **argv)
 {
-	static const struct option table[] = {{"config", required_argument, NULL, 'c'}, {"out", required_argument, NULL, 'o'},
-					      {"input", required_argument, NULL, 'i'},	{"shots", required_argument, NULL, 'n'},
-					      {"position", required_argument, NULL, 'p'}, {"help", no_argument, NULL, 'h'},
+	static const struct option table[] = {{"config", required_argument, NULL, 'c'},
+					      {"out", required_argument, NULL, 'o'},
+					      {"input", required_argument, NULL, 'i'},
+					      {"shots", required_argument, NULL, 'n'},
+					      {"position", required_argument, NULL, 'p'},
+					      {"help", no_argument, NULL, 'h'},
 					      {NULL, 0, NULL, 0}};
 	*o = (struct demo_options){config_default_path(), "build/demo", NULL, NULL, 5};
 	int c;
@@ -423,8 +435,10 @@ static int parse(struct demo_options *o, int argc, char **argv)
 			fprintf(stderr, "billiard demo: --shots: found \"%s\", allowed 1..1000\n", optarg);
 			return 2;
 		} else if (c == 'h') {
-			puts("usage: billiard demo [-c CONF] [--out DIR] [--shots N] [--position FILE] | --input FOLDER\n"
-			     "The whole loop on the virtual table (or on photographs), with two pictures per proposal in DIR.");
+			puts("usage: billiard demo [-c CONF] [--out DIR] [--shots N] [--position FILE] | --input "
+			     "FOLDER\n"
+			     "The whole loop on the virtual table (or on photographs), with two pictures per proposal "
+			     "in DIR.");
 			return 1;
 		} else if (c == '?')
 			return 2;

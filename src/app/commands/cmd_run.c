@@ -61,7 +61,8 @@ int cmd_run(int argc, char **argv)
 	int c;
 	while ((c = getopt_long(argc, argv, "c:h", table, NULL)) != -1) {
 		if (c == 'h') {
-			puts("usage: billiard run [-c CONF] [--bus URL]\nStarts the services of the configuration; Ctrl-C stops them.");
+			puts("usage: billiard run [-c CONF] [--bus URL]\nStarts the services of the configuration; "
+			     "Ctrl-C stops them.");
 			return 0;
 		}
 		if (c == '?')

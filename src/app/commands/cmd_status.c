@@ -28,7 +28,8 @@ static bool on_status(void *context, const void *message)
 	if (s->metric_count < 0 || s->metric_count > (int)(sizeof s->metrics / sizeof s->metrics[0]))
 		return false;
 	int i = 0;
-	while (i < l->count && !(l->status[i].pid == s->pid && memcmp(l->status[i].process, s->process, sizeof s->process) == 0))
+	while (i < l->count &&
+	       !(l->status[i].pid == s->pid && memcmp(l->status[i].process, s->process, sizeof s->process) == 0))
 		i++;
 	if (i == PROCESS_MAX)
 		return false;
@@ -74,9 +75,9 @@ static void print_json(const billiard_status_t *s)
 		text(unit, sizeof unit, s->metrics[i].unit, sizeof s->metrics[i].unit);
 		json_object_set_new(metrics, name, json_pack("{s:f,s:s}", "value", s->metrics[i].value, "unit", unit));
 	}
-	json_t *object = json_pack("{s:s,s:i,s:s,s:s,s:f,s:I,s:I,s:o}", "process", t.process, "pid", (int)s->pid, "state", t.state, "error",
-				   t.error, "up_s", up_seconds(s), "received", (json_int_t)s->received,
-				   "ignored", (json_int_t)s->ignored, "metrics", metrics);
+	json_t *object = json_pack("{s:s,s:i,s:s,s:s,s:f,s:I,s:I,s:o}", "process", t.process, "pid", (int)s->pid,
+				   "state", t.state, "error", t.error, "up_s", up_seconds(s), "received",
+				   (json_int_t)s->received, "ignored", (json_int_t)s->ignored, "metrics", metrics);
 	if (!object)
 		return;
 	json_dumpf(object, stdout, JSON_COMPACT);
@@ -87,13 +88,14 @@ static void print_json(const billiard_status_t *s)
 static void print_line(const billiard_status_t *s)
 {
 	struct texts t = texts_of(s);
-	printf("%-20s %7d  %-16s up %6.0f s  in %lld, ignored %lld", t.process, s->pid, t.state,
-	       up_seconds(s), (long long)s->received, (long long)s->ignored);
+	printf("%-20s %7d  %-16s up %6.0f s  in %lld, ignored %lld", t.process, s->pid, t.state, up_seconds(s),
+	       (long long)s->received, (long long)s->ignored);
 	for (int i = 0; i < s->metric_count; i++) {
 		char name[24], unit[12];
 		text(name, sizeof name, s->metrics[i].name, sizeof s->metrics[i].name);
 		text(unit, sizeof unit, s->metrics[i].unit, sizeof s->metrics[i].unit);
-		printf(", %s %.4g%s%s", name, s->metrics[i].value, strcmp(unit, "1") ? " " : "", strcmp(unit, "1") ? unit : "");
+		printf(", %s %.4g%s%s", name, s->metrics[i].value, strcmp(unit, "1") ? " " : "",
+		       strcmp(unit, "1") ? unit : "");
 	}
 	putchar('\n');
 	if (t.error[0])
@@ -120,7 +122,8 @@ static int listen_for(struct bus *bus, double seconds)
 	if (r < 0)
 		return r;
 	if ((r = sd_event_add_io(event, NULL, bus_descriptor(bus), EPOLLIN, on_readable, bus)) >= 0 &&
-	    (r = sd_event_add_time_relative(event, NULL, CLOCK_MONOTONIC, (uint64_t)(1e6 * seconds), 0, on_time, NULL)) >= 0)
+	    (r = sd_event_add_time_relative(event, NULL, CLOCK_MONOTONIC, (uint64_t)(1e6 * seconds), 0, on_time,
+					    NULL)) >= 0)
 		r = sd_event_loop(event);
 	sd_event_unref(event);
 	return r;
@@ -134,7 +137,8 @@ static int print_missing(const struct config *config, const struct listener *l, 
 		const struct config_service *service = &config->service[i];
 		bool heard = !service->enabled;
 		for (int k = 0; k < l->count && !heard; k++)
-			heard = strncmp((const char *)l->status[k].process, service->name, sizeof l->status[k].process) == 0;
+			heard = strncmp((const char *)l->status[k].process, service->name,
+					sizeof l->status[k].process) == 0;
 		if (heard)
 			continue;
 		missing++;
@@ -155,9 +159,10 @@ struct options {
 /* 0 go on, 1 help given, 2 bad use. */
 static int parse(struct options *o, const char *usage, int argc, char **argv)
 {
-	static const struct option table[] = {{"config", required_argument, NULL, 'c'}, {"bus", required_argument, NULL, 'b'},
-					      {"json", no_argument, NULL, 'j'},		{"seconds", required_argument, NULL, 's'},
-					      {"help", no_argument, NULL, 'h'},		{NULL, 0, NULL, 0}};
+	static const struct option table[] = {
+		{"config", required_argument, NULL, 'c'}, {"bus", required_argument, NULL, 'b'},
+		{"json", no_argument, NULL, 'j'},	  {"seconds", required_argument, NULL, 's'},
+		{"help", no_argument, NULL, 'h'},	  {NULL, 0, NULL, 0}};
 	*o = (struct options){config_default_path(), NULL, false, 1.5};
 	int c;
 	while ((c = getopt_long(argc, argv, "+c:h", table, NULL)) != -1) {
@@ -199,15 +204,18 @@ int cmd_status(int argc, char **argv)
 	struct options o;
 	struct config config;
 	struct bus *bus;
-	int status = parse(&o, "usage: billiard status [-c CONF] [--bus URL] [--json] [--seconds S]\nState, figures and last error of each process; "
-			       "exit status 1 when one is silent.",
+	int status = parse(&o,
+			   "usage: billiard status [-c CONF] [--bus URL] [--json] [--seconds S]\nState, figures and "
+			   "last error of each process; "
+			   "exit status 1 when one is silent.",
 			   argc, argv);
 	if (status)
 		return status == 1 ? 0 : 2;
 	if ((status = open_bus(&o, "status", &config, &bus)))
 		return status;
 	struct listener *listener = calloc(1, sizeof *listener);
-	if (listener && bus_subscribe(bus, "STATUS", &bus_status, BUS_EACH, on_status, listener) == 0 && listen_for(bus, o.seconds) >= 0) {
+	if (listener && bus_subscribe(bus, "STATUS", &bus_status, BUS_EACH, on_status, listener) == 0 &&
+	    listen_for(bus, o.seconds) >= 0) {
 		for (int i = 0; i < listener->count; i++)
 			(o.json ? print_json : print_line)(&listener->status[i]);
 		status = print_missing(&config, listener, o.json) ? 1 : 0;
@@ -226,11 +234,21 @@ static const struct control {
 	const char *name;
 	enum argument argument;
 } controls[] = {
-	{"pause", ARGUMENT_NONE},	   {"resume", ARGUMENT_NONE},	       {"infinity", ARGUMENT_NONE},
-	{"next", ARGUMENT_NONE},	   {"previous", ARGUMENT_NONE},	       {"halo", ARGUMENT_NONE},
-	{"paths", ARGUMENT_NONE},	   {"table", ARGUMENT_NONE},	       {"info", ARGUMENT_NONE},
-	{"animation", ARGUMENT_NONE},	   {"animation-stop", ARGUMENT_NONE},  {"animation-restart", ARGUMENT_NONE},
-	{"animation-seek", ARGUMENT_SECONDS}, {"snapshot", ARGUMENT_FILE}, {"cancel", ARGUMENT_ID},
+	{"pause", ARGUMENT_NONE},
+	{"resume", ARGUMENT_NONE},
+	{"infinity", ARGUMENT_NONE},
+	{"next", ARGUMENT_NONE},
+	{"previous", ARGUMENT_NONE},
+	{"halo", ARGUMENT_NONE},
+	{"paths", ARGUMENT_NONE},
+	{"table", ARGUMENT_NONE},
+	{"info", ARGUMENT_NONE},
+	{"animation", ARGUMENT_NONE},
+	{"animation-stop", ARGUMENT_NONE},
+	{"animation-restart", ARGUMENT_NONE},
+	{"animation-seek", ARGUMENT_SECONDS},
+	{"snapshot", ARGUMENT_FILE},
+	{"cancel", ARGUMENT_ID},
 };
 
 static bool argument_fits(enum argument kind, const char *text)
@@ -256,8 +274,8 @@ static int read_control(int count, char **word, billiard_command_t *command)
 		if (strcmp(word[0], controls[i].name) != 0)
 			continue;
 		if (!argument_fits(controls[i].argument, argument))
-			return cmd_bad_input("billiard control: %s: found \"%s\", wanted %s", word[0], argument ? argument : "nothing",
-					     wanted[controls[i].argument]);
+			return cmd_bad_input("billiard control: %s: found \"%s\", wanted %s", word[0],
+					     argument ? argument : "nothing", wanted[controls[i].argument]);
 		bus_set_text(command->name, sizeof command->name, word[0]);
 		bus_set_text(command->argument, sizeof command->argument, argument ? argument : "");
 		return 0;
@@ -270,9 +288,12 @@ int cmd_control(int argc, char **argv)
 	struct options o;
 	struct config config;
 	struct bus *bus;
-	int status = parse(&o, "usage: billiard control [-c CONF] [--bus URL] NAME [ARGUMENT]\npause, resume, infinity, next, previous, halo, paths, "
-			       "table, info, animation, animation-stop,\nanimation-seek SECONDS, animation-restart, snapshot FILE.png, "
-			       "cancel ID",
+	int status = parse(&o,
+			   "usage: billiard control [-c CONF] [--bus URL] NAME [ARGUMENT]\npause, resume, infinity, "
+			   "next, previous, halo, paths, "
+			   "table, info, animation, animation-stop,\nanimation-seek SECONDS, animation-restart, "
+			   "snapshot FILE.png, "
+			   "cancel ID",
 			   argc, argv);
 	if (status)
 		return status == 1 ? 0 : 2;

@@ -7,7 +7,7 @@
 enum { OVERLAY_REFUSED_MAX = 64 };
 
 struct overlay {
-	const struct image *frame;	/* borrowed, all of them */
+	const struct image *frame; /* borrowed, all of them */
 	const struct table *table;
 	const struct vision_result *result;
 	const struct vision_refusal *refused;

@@ -13,72 +13,72 @@ enum { CONFIG_PATH_MAX = 256, CONFIG_SERVICE_MAX = 8, CONFIG_PROFILE_MAX = 8 };
 
 /* Planner service and defaults of its requests. */
 struct config_planner {
-	int workers;			/* 0: cores - 1, at least 1 */
-	size_t memory;			/* bytes */
+	int workers;   /* 0: cores - 1, at least 1 */
+	size_t memory; /* bytes */
 	int depth, rails, balls, speeds, plans;
-	uint64_t budget_nodes;		/* of a request by infinity; 0 none */
-	double budget;			/* s; 0 none */
+	uint64_t budget_nodes; /* of a request by infinity; 0 none */
+	double budget;	       /* s; 0 none */
 	enum plan_scheme scheme;
-	double sync_period, sync_window;	/* s, k and n of thesis 4.7; n 0: as long as fits */
+	double sync_period, sync_window; /* s, k and n of thesis 4.7; n 0: as long as fits */
 };
 
 /* Controller. */
 struct config_infinity {
-	double still_distance;		/* m a ball may move and still rest, 0.0005 */
-	int still_frames;		/* frames in a row */
-	bool rules;			/* by the rules of snooker; false: any ball (thesis' infinity mode) */
-	double plan_timeout;		/* s without an answer until the request is repeated */
-	double animation_rate;		/* 1 real time */
-	double animation_pause;		/* s */
+	double still_distance;	/* m a ball may move and still rest, 0.0005 */
+	int still_frames;	/* frames in a row */
+	bool rules;		/* by the rules of snooker; false: any ball (thesis' infinity mode) */
+	double plan_timeout;	/* s without an answer until the request is repeated */
+	double animation_rate;	/* 1 real time */
+	double animation_pause; /* s */
 };
 
 /* Projector: where table points land on its picture. */
 struct config_projector {
-	int width, height;		/* px */
-	double homography[9];		/* table m (x, y, 1) to px, row by row */
+	int width, height;    /* px */
+	double homography[9]; /* table m (x, y, 1) to px, row by row */
 	bool fullscreen;
 	char font[64];
 };
 
 /* Virtual table: light, noise, player. */
 struct config_virtual {
-	double noise;			/* 1 sigma of the sensor, grey levels */
-	double exposure;		/* 1 normal */
-	double projector_light;		/* share of full white that the projector adds to the cloth */
-	double frame_rate;		/* 1/s */
-	double error_angle;		/* rad, 1 sigma of the player */
-	double error_speed;		/* share, 1 sigma */
+	double noise;		/* 1 sigma of the sensor, grey levels */
+	double exposure;	/* 1 normal */
+	double projector_light; /* share of full white that the projector adds to the cloth */
+	double frame_rate;	/* 1/s */
+	double error_angle;	/* rad, 1 sigma of the player */
+	double error_speed;	/* share, 1 sigma */
 	uint64_t seed;
-	double time_scale;		/* 1 real time, 5 five times as fast */
-	double think_time;		/* s the player looks at a proposal before playing */
-	double camera_height;		/* m above the markers' plane */
-	double camera_x, camera_y;	/* m, point below the camera, table frame */
-	double camera_tilt_x, camera_tilt_y;	/* rad */
-	int jpeg_quality;		/* 1..100 */
+	double time_scale;		     /* 1 real time, 5 five times as fast */
+	double think_time;		     /* s the player looks at a proposal before playing */
+	double camera_height;		     /* m above the markers' plane */
+	double camera_x, camera_y;	     /* m, point below the camera, table frame */
+	double camera_tilt_x, camera_tilt_y; /* rad */
+	int jpeg_quality;		     /* 1..100 */
 };
 
 struct config_service {
-	char name[24];			/* "billiard-vision", ... */
-	char arguments[128];		/* added to the command line */
+	char name[24];	     /* "billiard-vision", ... */
+	char arguments[128]; /* added to the command line */
 	bool enabled;
 };
 
 struct config {
-	char path[CONFIG_PATH_MAX];	/* the file it came from */
+	char path[CONFIG_PATH_MAX]; /* the file it came from */
 	char name[32];
 	struct table table;
-	struct model model;		/* what is shown */
+	struct model model; /* what is shown */
 	char model_name[24];
 	struct cost_profile profiles[CONFIG_PROFILE_MAX];
 	int profile_count;
-	struct cost_profile profile;	/* the chosen one of profiles */
+	struct cost_profile profile; /* the chosen one of profiles */
 	struct camera_intrinsics camera;
 	struct marker_layout markers;
-	char colours[CONFIG_PATH_MAX];	/* colour parameters; in the file relative to it, here to be opened */
-	char source[CONFIG_PATH_MAX];	/* frame source of billiard-vision */
-	double camera_rate;		/* CAMERA messages per second, 0 none */
-	double marker_interval, pose_keep;	/* s */
-	char bus[128];			/* LCM URL; LCM_DEFAULT_URL overrides */
+	char colours[CONFIG_PATH_MAX];	   /* colour parameters; in the file relative to it, here to be opened */
+	char source[CONFIG_PATH_MAX];	   /* frame source of billiard-vision */
+	double camera_rate;		   /* CAMERA messages per second, 0 none */
+	double marker_interval, pose_keep; /* s */
+	char bus[128];			   /* LCM URL; LCM_DEFAULT_URL overrides */
 	struct config_planner planner;
 	struct config_infinity infinity;
 	struct config_projector projector;

@@ -8,11 +8,11 @@
 enum config_type {
 	CONFIG_NUMBER,	/* double */
 	CONFIG_WHOLE,	/* int */
-	CONFIG_COUNT64,	/* uint64_t */
+	CONFIG_COUNT64, /* uint64_t */
 	CONFIG_FLAG,	/* bool */
 	CONFIG_TEXT,	/* char[size] */
-	CONFIG_NUMBERS,	/* size doubles in a row (a vec2 is two) */
-	CONFIG_SECTION,	/* group of keys, offsets from the same base */
+	CONFIG_NUMBERS, /* size doubles in a row (a vec2 is two) */
+	CONFIG_SECTION, /* group of keys, offsets from the same base */
 	CONFIG_LIST	/* list of groups, each into an element of size bytes */
 };
 
@@ -38,16 +38,16 @@ struct config_key {
 	const char *name;
 	enum config_type type;
 	enum config_unit unit;
-	size_t offset;			/* bytes from the base */
-	double min, max;		/* in the file's unit; of a text or list: its length */
-	size_t size;			/* TEXT: bytes; NUMBERS: how many; LIST: bytes of an element */
-	size_t count_offset;		/* LIST: an int for the number of elements */
-	const struct config_key *keys;	/* SECTION, LIST */
+	size_t offset;		       /* bytes from the base */
+	double min, max;	       /* in the file's unit; of a text or list: its length */
+	size_t size;		       /* TEXT: bytes; NUMBERS: how many; LIST: bytes of an element */
+	size_t count_offset;	       /* LIST: an int for the number of elements */
+	const struct config_key *keys; /* SECTION, LIST */
 };
 
 struct config_reader {
-	const char *path;	/* of the file, for messages */
-	char *err;		/* borrowed */
+	const char *path; /* of the file, for messages */
+	char *err;	  /* borrowed */
 	size_t err_size;
 };
 

@@ -4,27 +4,49 @@
  * words. */
 /* clang-format off: a table is read by its columns. */
 
-#define AT(member) offsetof(struct config_file, member)
+#define AT(member)	 offsetof(struct config_file, member)
 #define IN(type, member) offsetof(struct type, member)
 
 #define RANGE(low, high) .min = low, .max = high
-#define NUMBER(key, unit_, low, high, at) \
-	{.name = key, .type = CONFIG_NUMBER, .unit = unit_, .offset = at, RANGE(low, high)}
-#define WHOLE(key, unit_, low, high, at) \
-	{.name = key, .type = CONFIG_WHOLE, .unit = unit_, .offset = at, RANGE(low, high)}
-#define COUNT(key, low, high, at) {.name = key, .type = CONFIG_COUNT64, .offset = at, RANGE(low, high)}
-#define FLAG(key, at) {.name = key, .type = CONFIG_FLAG, .offset = at}
-#define TEXT(key, low, high, at) \
-	{.name = key, .type = CONFIG_TEXT, .offset = at, RANGE(low, high), .size = (high) + 1}
-#define NUMBERS(key, n, unit_, low, high, at) \
-	{.name = key, .type = CONFIG_NUMBERS, .unit = unit_, .offset = at, RANGE(low, high), .size = n}
+#define NUMBER(key, unit_, low, high, at)                                                                              \
+	{                                                                                                              \
+		.name = key, .type = CONFIG_NUMBER, .unit = unit_, .offset = at, RANGE(low, high)                      \
+	}
+#define WHOLE(key, unit_, low, high, at)                                                                               \
+	{                                                                                                              \
+		.name = key, .type = CONFIG_WHOLE, .unit = unit_, .offset = at, RANGE(low, high)                       \
+	}
+#define COUNT(key, low, high, at)                                                                                      \
+	{                                                                                                              \
+		.name = key, .type = CONFIG_COUNT64, .offset = at, RANGE(low, high)                                    \
+	}
+#define FLAG(key, at)                                                                                                  \
+	{                                                                                                              \
+		.name = key, .type = CONFIG_FLAG, .offset = at                                                         \
+	}
+#define TEXT(key, low, high, at)                                                                                       \
+	{                                                                                                              \
+		.name = key, .type = CONFIG_TEXT, .offset = at, RANGE(low, high), .size = (high) + 1                   \
+	}
+#define NUMBERS(key, n, unit_, low, high, at)                                                                          \
+	{                                                                                                              \
+		.name = key, .type = CONFIG_NUMBERS, .unit = unit_, .offset = at, RANGE(low, high), .size = n          \
+	}
 #define POINT(key, at) NUMBERS(key, 2, UNIT_MM, -5000, 5000, at)
-#define SECTION(key, table) {.name = key, .type = CONFIG_SECTION, .keys = table}
+#define SECTION(key, table)                                                                                            \
+	{                                                                                                              \
+		.name = key, .type = CONFIG_SECTION, .keys = table                                                     \
+	}
 /* An array member of struct config_file and the member that counts it. */
-#define LIST(key, low, high, array, counter, table) \
-	{.name = key, .type = CONFIG_LIST, .offset = AT(array), RANGE(low, high), \
-	 .size = sizeof ((struct config_file *)0)->array[0], .count_offset = AT(counter), .keys = table}
-#define END {.name = NULL}
+#define LIST(key, low, high, array, counter, table)                                                                    \
+	{                                                                                                              \
+		.name = key, .type = CONFIG_LIST, .offset = AT(array), RANGE(low, high),                               \
+		.size = sizeof((struct config_file *)0)->array[0], .count_offset = AT(counter), .keys = table          \
+	}
+#define END                                                                                                            \
+	{                                                                                                              \
+		.name = NULL                                                                                           \
+	}
 
 static const struct config_key cushion_keys[] = {
 	POINT("from", IN(cushion, a)),
@@ -61,7 +83,7 @@ static const struct config_key spot_keys[] = {
 static const struct config_key table_keys[] = {
 	NUMBER("length", UNIT_MM, 500, 5000, AT(config.table.length)),
 	NUMBER("width", UNIT_MM, 300, 3000, AT(config.table.width)),
-	NUMBER("ball_diameter", UNIT_MM, 20, 80, AT(config.table.ball_radius)),	/* halved by config.c */
+	NUMBER("ball_diameter", UNIT_MM, 20, 80, AT(config.table.ball_radius)), /* halved by config.c */
 	NUMBER("ball_mass", UNIT_KG, 0.01, 1, AT(config.table.ball_mass)),
 	NUMBER("nose_height", UNIT_MM, 10, 80, AT(nose_height)),
 	POINT("d_centre", AT(config.table.baulk_d_centre)),

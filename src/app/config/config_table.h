@@ -7,11 +7,11 @@
 
 struct config_file {
 	struct config config;
-	char profile[16];		/* name of the chosen one */
-	char scheme[16];		/* of the planner */
-	double nose_height;		/* m, one for all cushions and jaws */
-	double topspin_speed;		/* m/s, factor A of variant 1 */
-	double topspin_share;		/* factor A of variant 2 */
+	char profile[16];     /* name of the chosen one */
+	char scheme[16];      /* of the planner */
+	double nose_height;   /* m, one for all cushions and jaws */
+	double topspin_speed; /* m/s, factor A of variant 1 */
+	double topspin_share; /* factor A of variant 2 */
 	int memory_mib;
 };
 

@@ -10,11 +10,11 @@
 enum { BALL_NAME_SIZE = 16 };
 
 struct position {
-	struct ball ball[BALL_MAX];	/* m */
+	struct ball ball[BALL_MAX]; /* m */
 	char name[BALL_MAX][BALL_NAME_SIZE];
 	int count;
 	bool has_velocity;
-	vec2 velocity;			/* m/s, of the cue ball */
+	vec2 velocity; /* m/s, of the cue ball */
 };
 
 /* From text (name: for messages). 0, or -EINVAL with "name:line: reason" in err; *out is untouched on failure.

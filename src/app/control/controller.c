@@ -6,8 +6,8 @@
 
 #include "app/process/bus.h"
 
-static const double SETTLE_MAX = 0.006;		/* m a ball may be moved to take camera errors out of a layout */
-static const double NEW_LAYOUT = 0.003;		/* m a ball must lie elsewhere for a new proposal */
+static const double SETTLE_MAX = 0.006; /* m a ball may be moved to take camera errors out of a layout */
+static const double NEW_LAYOUT = 0.003; /* m a ball must lie elsewhere for a new proposal */
 
 void controller_init(struct controller *c, const struct config *config)
 {
@@ -110,7 +110,8 @@ static void request(struct controller *c)
 		.budget_s = p->budget,
 	};
 	struct layout settled = c->seen;
-	if (!layout_settle(&settled, c->config->table.length, c->config->table.width, c->config->table.ball_radius, SETTLE_MAX))
+	if (!layout_settle(&settled, c->config->table.length, c->config->table.width, c->config->table.ball_radius,
+			   SETTLE_MAX))
 		note(c, "balls seem to overlap");
 	char name[16];
 	int number[COLOUR_COUNT] = {0};
@@ -212,7 +213,8 @@ static void on_verdict(struct controller *c, enum stability_verdict verdict, dou
 		break;
 	case STABILITY_STABLE:
 		/* While a proposal is up, only another layout counts: a hand that passed changes nothing. */
-		if ((s != FSM_PLANNING && s != FSM_SHOWING) || !c->has_asked || layout_differs(&c->asked, &c->seen, NEW_LAYOUT))
+		if ((s != FSM_PLANNING && s != FSM_SHOWING) || !c->has_asked ||
+		    layout_differs(&c->asked, &c->seen, NEW_LAYOUT))
 			event(c, FSM_STABLE, now);
 		break;
 	case STABILITY_UNSURE:

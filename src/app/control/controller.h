@@ -19,26 +19,26 @@ struct controller_output {
 };
 
 struct controller {
-	const struct config *config;	/* borrowed */
+	const struct config *config; /* borrowed */
 	struct fsm fsm;
 	struct stability stability;
-	struct layout seen;		/* of the last frame that could be used */
-	struct layout asked;		/* what the present request was made for */
+	struct layout seen;  /* of the last frame that could be used */
+	struct layout asked; /* what the present request was made for */
 	bool has_asked;
-	int64_t last_frame;		/* us, to tell outdated frames */
-	char note[96];			/* why there is no proposal */
-	char drawn_note[96];		/* what of it is on the table */
+	int64_t last_frame;  /* us, to tell outdated frames */
+	char note[96];	     /* why there is no proposal */
+	char drawn_note[96]; /* what of it is on the table */
 	struct rules_state rules;
 	struct draw_options options;
 	bool animate;
 	billiard_plan_request_t request;
-	billiard_plan_t plan;		/* the newest answer to request */
+	billiard_plan_t plan; /* the newest answer to request */
 	bool has_plan;
-	bool was_cancelled;		/* the planner ended the present request, though nobody here asked for that */
-	int entry, shot;		/* shown */
+	bool was_cancelled; /* the planner ended the present request, though nobody here asked for that */
+	int entry, shot;    /* shown */
 	billiard_draw_list_t draw;
 	billiard_animation_t animation;
-	double animation_since;		/* s, monotonic, when it was at its position */
+	double animation_since; /* s, monotonic, when it was at its position */
 	struct controller_output output;
 	int64_t proposals;
 };

@@ -4,7 +4,7 @@
 #include <math.h>
 
 /* A shot that nobody saw come to rest: after this long the table is simply watched again. */
-static const double SHOT_TIMEOUT = 60;	/* s */
+static const double SHOT_TIMEOUT = 60; /* s */
 
 struct cell {
 	bool written;
@@ -12,52 +12,62 @@ struct cell {
 	unsigned actions;
 };
 
-#define GO(state, actions) {true, FSM_##state, (actions)}
-#define CLEAR FSM_DO_CLEAR
+#define GO(state, actions)                                                                                             \
+	{                                                                                                              \
+		true, FSM_##state, (actions)                                                                           \
+	}
+#define CLEAR	FSM_DO_CLEAR
 #define REQUEST FSM_DO_REQUEST
-#define CANCEL FSM_DO_CANCEL
-#define SHOW FSM_DO_SHOW
-#define NOTE FSM_DO_NOTE
+#define CANCEL	FSM_DO_CANCEL
+#define SHOW	FSM_DO_SHOW
+#define NOTE	FSM_DO_NOTE
 
 /* Cells that are not written: stay, do nothing. */
-static const struct cell table[FSM_STATE_COUNT][FSM_EVENT_COUNT] = {
-	[FSM_BLIND] = {
-		[FSM_MOVING] = GO(WATCHING, CLEAR),
-		[FSM_STABLE] = GO(PLANNING, CLEAR | REQUEST),
-		[FSM_PAUSE] = GO(PAUSED, CLEAR),
-	},
-	[FSM_WATCHING] = {
-		[FSM_LOST] = GO(BLIND, NOTE),
-		[FSM_STABLE] = GO(PLANNING, REQUEST),
-		[FSM_PAUSE] = GO(PAUSED, CLEAR),
-	},
-	[FSM_PLANNING] = {
-		[FSM_LOST] = GO(BLIND, CANCEL | NOTE),
-		[FSM_MOVING] = GO(WATCHING, CANCEL),
-		[FSM_STABLE] = GO(PLANNING, CANCEL | REQUEST),
-		[FSM_READY] = GO(SHOWING, SHOW),
-		[FSM_NONE] = GO(SHOWING, NOTE),
-		[FSM_TIMEOUT] = GO(PLANNING, FSM_DO_REPEAT),
-		[FSM_PAUSE] = GO(PAUSED, CANCEL | CLEAR),
-	},
-	[FSM_SHOWING] = {
-		[FSM_LOST] = GO(BLIND, CLEAR | NOTE),
-		[FSM_MOVING] = GO(SHOT, CLEAR),
-		[FSM_STABLE] = GO(PLANNING, CLEAR | REQUEST),
-		[FSM_READY] = GO(SHOWING, SHOW),
-		[FSM_PAUSE] = GO(PAUSED, CLEAR),
-		[FSM_NEXT] = GO(SHOWING, FSM_DO_NEXT | SHOW),
-		[FSM_PREVIOUS] = GO(SHOWING, FSM_DO_PREVIOUS | SHOW),
-	},
-	[FSM_SHOT] = {
-		[FSM_LOST] = GO(BLIND, NOTE),
-		[FSM_STABLE] = GO(PLANNING, REQUEST),
-		[FSM_TIMEOUT] = GO(WATCHING, 0),
-		[FSM_PAUSE] = GO(PAUSED, 0),
-	},
-	[FSM_PAUSED] = {
-		[FSM_RESUME] = GO(BLIND, 0),
-	},
+static const struct cell table[FSM_STATE_COUNT][FSM_EVENT_COUNT] =
+	{
+		[FSM_BLIND] =
+			{
+				[FSM_MOVING] = GO(WATCHING, CLEAR),
+				[FSM_STABLE] = GO(PLANNING, CLEAR | REQUEST),
+				[FSM_PAUSE] = GO(PAUSED, CLEAR),
+			},
+		[FSM_WATCHING] =
+			{
+				[FSM_LOST] = GO(BLIND, NOTE),
+				[FSM_STABLE] = GO(PLANNING, REQUEST),
+				[FSM_PAUSE] = GO(PAUSED, CLEAR),
+			},
+		[FSM_PLANNING] =
+			{
+				[FSM_LOST] = GO(BLIND, CANCEL | NOTE),
+				[FSM_MOVING] = GO(WATCHING, CANCEL),
+				[FSM_STABLE] = GO(PLANNING, CANCEL | REQUEST),
+				[FSM_READY] = GO(SHOWING, SHOW),
+				[FSM_NONE] = GO(SHOWING, NOTE),
+				[FSM_TIMEOUT] = GO(PLANNING, FSM_DO_REPEAT),
+				[FSM_PAUSE] = GO(PAUSED, CANCEL | CLEAR),
+			},
+		[FSM_SHOWING] =
+			{
+				[FSM_LOST] = GO(BLIND, CLEAR | NOTE),
+				[FSM_MOVING] = GO(SHOT, CLEAR),
+				[FSM_STABLE] = GO(PLANNING, CLEAR | REQUEST),
+				[FSM_READY] = GO(SHOWING, SHOW),
+				[FSM_PAUSE] = GO(PAUSED, CLEAR),
+				[FSM_NEXT] = GO(SHOWING, FSM_DO_NEXT | SHOW),
+				[FSM_PREVIOUS] = GO(SHOWING, FSM_DO_PREVIOUS | SHOW),
+			},
+		[FSM_SHOT] =
+			{
+				[FSM_LOST] = GO(BLIND, NOTE),
+				[FSM_STABLE] = GO(PLANNING, REQUEST),
+				[FSM_TIMEOUT] = GO(WATCHING, 0),
+				[FSM_PAUSE] = GO(PAUSED, 0),
+			},
+		[FSM_PAUSED] =
+			{
+				[FSM_RESUME] = GO(BLIND, 0),
+			},
 };
 
 unsigned fsm_step(struct fsm *fsm, enum fsm_event event, double now)

@@ -7,43 +7,43 @@
 #include <stdint.h>
 
 enum fsm_state {
-	FSM_BLIND,	/* not calibrated, or no cue ball */
-	FSM_WATCHING,	/* sees the table, waits for rest */
-	FSM_PLANNING,	/* asked for a plan */
-	FSM_SHOWING,	/* a proposal (or the note that there is none) is on the table */
-	FSM_SHOT,	/* balls move */
+	FSM_BLIND,    /* not calibrated, or no cue ball */
+	FSM_WATCHING, /* sees the table, waits for rest */
+	FSM_PLANNING, /* asked for a plan */
+	FSM_SHOWING,  /* a proposal (or the note that there is none) is on the table */
+	FSM_SHOT,     /* balls move */
 	FSM_PAUSED,
 	FSM_STATE_COUNT
 };
 
 enum fsm_event {
-	FSM_LOST,	/* nothing can be known about the balls */
+	FSM_LOST, /* nothing can be known about the balls */
 	FSM_MOVING,
-	FSM_STABLE,	/* at rest, in a layout that no proposal was made for */
-	FSM_READY,	/* a plan for the present request came */
-	FSM_NONE,	/* the planner found none, or refused */
-	FSM_TIMEOUT,	/* nothing happened for the time of fsm_timeout() */
+	FSM_STABLE,  /* at rest, in a layout that no proposal was made for */
+	FSM_READY,   /* a plan for the present request came */
+	FSM_NONE,    /* the planner found none, or refused */
+	FSM_TIMEOUT, /* nothing happened for the time of fsm_timeout() */
 	FSM_PAUSE,
 	FSM_RESUME,
-	FSM_NEXT,	/* show the next proposal */
+	FSM_NEXT, /* show the next proposal */
 	FSM_PREVIOUS,
 	FSM_EVENT_COUNT
 };
 
 enum fsm_action {
-	FSM_DO_CLEAR = 1 << 0,		/* take the proposal off the table */
-	FSM_DO_REQUEST = 1 << 1,	/* send a new request for the layout seen */
-	FSM_DO_CANCEL = 1 << 2,		/* tell the planner that the request is void */
-	FSM_DO_SHOW = 1 << 3,		/* draw the present proposal */
-	FSM_DO_NOTE = 1 << 4,		/* draw why there is no proposal */
-	FSM_DO_NEXT = 1 << 5,		/* go to the next proposal, before SHOW */
+	FSM_DO_CLEAR = 1 << 0,	 /* take the proposal off the table */
+	FSM_DO_REQUEST = 1 << 1, /* send a new request for the layout seen */
+	FSM_DO_CANCEL = 1 << 2,	 /* tell the planner that the request is void */
+	FSM_DO_SHOW = 1 << 3,	 /* draw the present proposal */
+	FSM_DO_NOTE = 1 << 4,	 /* draw why there is no proposal */
+	FSM_DO_NEXT = 1 << 5,	 /* go to the next proposal, before SHOW */
 	FSM_DO_PREVIOUS = 1 << 6,
-	FSM_DO_REPEAT = 1 << 7		/* send the same request again */
+	FSM_DO_REPEAT = 1 << 7 /* send the same request again */
 };
 
 struct fsm {
 	enum fsm_state state;
-	double since;		/* s, when the state was entered or its timer restarted; any epoch */
+	double since; /* s, when the state was entered or its timer restarted; any epoch */
 };
 
 /* One step at time now (s, the epoch of since). Returns the set of actions, to be done in the order of the enum. */

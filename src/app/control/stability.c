@@ -3,12 +3,12 @@
 #include <math.h>
 
 enum {
-	LOST_FRAMES = 5,	/* frames without a cue ball before it counts: single misses happen (thesis 4.9.3) */
-	MOVING_FRAMES = 2,	/* frames in a row that must show movement */
+	LOST_FRAMES = 5,   /* frames without a cue ball before it counts: single misses happen (thesis 4.9.3) */
+	MOVING_FRAMES = 2, /* frames in a row that must show movement */
 	SETTLE_ROUNDS = 200
 };
 
-static const double NEAREST_MAX = 0.025;	/* m, less than half the distance of touching balls */
+static const double NEAREST_MAX = 0.025; /* m, less than half the distance of touching balls */
 
 void stability_init(struct stability *s, double still_distance, int still_frames)
 {
@@ -155,7 +155,7 @@ static double keep_on_bed(struct layout *layout, double x_max, double y_max)
 
 bool layout_settle(struct layout *layout, double length, double width, double radius, double max_shift)
 {
-	static const double RESIDUAL = 1e-9;	/* m of overlap that is left */
+	static const double RESIDUAL = 1e-9; /* m of overlap that is left */
 	struct layout before = *layout;
 	double worst = INFINITY;
 	for (int round = 0; round < SETTLE_ROUNDS && worst > RESIDUAL; round++) {

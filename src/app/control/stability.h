@@ -11,27 +11,27 @@ enum { STABILITY_HISTORY = 64 };
 /* Balls of one frame as tracked: table frame, m. */
 struct layout {
 	int count;
-	struct ball ball[BALL_MAX];	/* at rest, colours set */
-	int track[BALL_MAX];		/* identity over frames */
-	int cue;			/* index of the cue ball, -1 none */
+	struct ball ball[BALL_MAX]; /* at rest, colours set */
+	int track[BALL_MAX];	    /* identity over frames */
+	int cue;		    /* index of the cue ball, -1 none */
 };
 
 enum stability_verdict {
-	STABILITY_LOST,		/* no calibration or no cue ball, for some frames in a row */
-	STABILITY_MOVING,	/* a ball moves */
-	STABILITY_UNSURE,	/* balls came or went, a hand is in the way, too few frames yet */
+	STABILITY_LOST,	  /* no calibration or no cue ball, for some frames in a row */
+	STABILITY_MOVING, /* a ball moves */
+	STABILITY_UNSURE, /* balls came or went, a hand is in the way, too few frames yet */
 	STABILITY_STABLE
 };
 
 struct stability {
-	double still_distance;	/* m */
+	double still_distance; /* m */
 	int still_frames;
-	vec2 last_cue;		/* m, for telling the cue ball from other white spots */
+	vec2 last_cue; /* m, for telling the cue ball from other white spots */
 	bool has_cue;
-	struct layout anchor;	/* where the balls were when the present quiet began */
-	int quiet;		/* frames since */
-	int lost;		/* frames in a row without calibration or cue ball */
-	int moving;		/* frames in a row with movement */
+	struct layout anchor; /* where the balls were when the present quiet began */
+	int quiet;	      /* frames since */
+	int lost;	      /* frames in a row without calibration or cue ball */
+	int moving;	      /* frames in a row with movement */
 };
 
 /* still_distance m > 0; still_frames 1..STABILITY_HISTORY. */

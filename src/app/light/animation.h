@@ -9,7 +9,7 @@
 /* Begins as {0}: nothing is animated. */
 struct animation {
 	billiard_animation_t message;
-	double begin;		/* s, when it was at message.position */
+	double begin; /* s, when it was at message.position */
 };
 
 /* Takes a message from the wire at time now (s, any epoch). False when it is out of range; then nothing has changed. *changed: it is another

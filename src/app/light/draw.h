@@ -13,10 +13,10 @@ enum draw_layer { DRAW_LAYER_TABLE, DRAW_LAYER_PATH, DRAW_LAYER_HALO, DRAW_LAYER
 
 /* What of a proposal is drawn (toggles of thesis 4.8). */
 struct draw_options {
-	bool halo;		/* rings around the balls */
-	bool other_paths;	/* dashed paths of the other balls */
-	bool table;		/* cushions and pockets */
-	bool info;		/* position and id beside each ball */
+	bool halo;	  /* rings around the balls */
+	bool other_paths; /* dashed paths of the other balls */
+	bool table;	  /* cushions and pockets */
+	bool info;	  /* position and id beside each ball */
 };
 struct draw_options draw_options_default(void);
 

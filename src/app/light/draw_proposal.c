@@ -209,7 +209,8 @@ static void draw_labels(const struct scene *scene, int number, int shots)
 {
 	char text[64];
 	int pocket = scene->shot->pocket, cue = cue_ball(scene);
-	int length = snprintf(text, sizeof(text), "%.1f m/s  %.0f\u00b0", scene->shot->speed, scene->shot->angle * RADIAN);
+	int length =
+		snprintf(text, sizeof(text), "%.1f m/s  %.0f\u00b0", scene->shot->speed, scene->shot->angle * RADIAN);
 	if (shots > 1)
 		snprintf(text + length, sizeof(text) - (size_t)length, "  %d/%d", number, shots);
 	vec2 at_cue = ball_lies(scene, cue) ? ball_start(scene, cue) : (vec2){0, 0};

@@ -6,13 +6,14 @@
 #include "lcmtypes/billiard_animation_t.h"
 #include "lcmtypes/billiard_draw_list_t.h"
 
-struct render;	/* opaque: surface and font */
+struct render; /* opaque: surface and font */
 /* 0, -EINVAL, -ENOMEM; *out NULL on failure. Caller destroys. */
 int render_create(struct render **out, const struct config_projector *projector, char *err, size_t err_size);
-void render_destroy(struct render *render);	/* NULL is fine */
+void render_destroy(struct render *render); /* NULL is fine */
 /* Draws the list, which draw_check() must have accepted, and over it the animated balls at time t (s since the strike)
  * unless animation is NULL. Black where nothing is. */
-void render_draw(struct render *render, const billiard_draw_list_t *list, const billiard_animation_t *animation, double t);
+void render_draw(struct render *render, const billiard_draw_list_t *list, const billiard_animation_t *animation,
+		 double t);
 /* The picture: 32-bit xRGB in native order, rows from the top, stride in bytes; borrowed until the next render_draw(). */
 const uint32_t *render_pixels(const struct render *render, int *width, int *height, int *stride);
 /* Place of an animated ball t s after the strike: by its keyframe begun last (thesis 4.6.5). False when it has

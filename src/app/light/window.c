@@ -22,9 +22,11 @@ int window_create(struct window **out, int width, int height, bool fullscreen, c
 	SDL_SetHint(SDL_HINT_NO_SIGNAL_HANDLERS, "1");
 	uint32_t flags = fullscreen ? SDL_WINDOW_FULLSCREEN_DESKTOP : SDL_WINDOW_RESIZABLE;
 	if (SDL_InitSubSystem(SDL_INIT_VIDEO) == 0) {
-		w->window = SDL_CreateWindow("billiard-projector", SDL_WINDOWPOS_CENTERED, SDL_WINDOWPOS_CENTERED, width, height, flags);
+		w->window = SDL_CreateWindow("billiard-projector", SDL_WINDOWPOS_CENTERED, SDL_WINDOWPOS_CENTERED,
+					     width, height, flags);
 		w->renderer = w->window ? SDL_CreateRenderer(w->window, -1, 0) : NULL;
-		w->texture = w->renderer ? SDL_CreateTexture(w->renderer, SDL_PIXELFORMAT_RGB888, SDL_TEXTUREACCESS_STREAMING, width, height)
+		w->texture = w->renderer ? SDL_CreateTexture(w->renderer, SDL_PIXELFORMAT_RGB888,
+							     SDL_TEXTUREACCESS_STREAMING, width, height)
 					 : NULL;
 	}
 	if (!w->texture) {

@@ -6,11 +6,11 @@
 #include <stddef.h>
 #include <stdint.h>
 
-struct window;	/* opaque */
+struct window; /* opaque */
 
 /* 0, or -ENODEV with the reason (no display): the caller goes on without. Caller destroys. */
 int window_create(struct window **out, int width, int height, bool fullscreen, char *err, size_t err_size);
-void window_destroy(struct window *window);	/* NULL is fine */
+void window_destroy(struct window *window); /* NULL is fine */
 
 /* Shows a picture of the window's size: 32-bit xRGB, rows from the top. */
 void window_show(struct window *window, const uint32_t *pixels, int stride);

@@ -66,8 +66,8 @@ static int check_fields(const billiard_plan_request_t *m, char *err, size_t err_
 	return 0;
 }
 
-int plan_request_from_message(struct plan_request *out, const billiard_plan_request_t *m, const struct table *table, char *err,
-			      size_t err_size)
+int plan_request_from_message(struct plan_request *out, const billiard_plan_request_t *m, const struct table *table,
+			      char *err, size_t err_size)
 {
 	int r = check_fields(m, err, err_size);
 	if (r < 0)
@@ -148,8 +148,8 @@ static void fill_shot(billiard_plan_shot_t *out, const struct plan_shot *shot, i
 	}
 }
 
-static bool add_keyframe(billiard_plan_t *out, const struct table *table, const struct ball *state, int ball, double begin, double end,
-			 enum event_kind event)
+static bool add_keyframe(billiard_plan_t *out, const struct table *table, const struct ball *state, int ball,
+			 double begin, double end, enum event_kind event)
 {
 	if (out->keyframe_count == PLAN_MESSAGE_KEYFRAMES)
 		return false;
@@ -200,7 +200,8 @@ static void add_keyframes(billiard_plan_t *out, billiard_plan_shot_t *shot, cons
 		if (trace->start[ball].phase == BALL_POTTED)
 			continue;
 		if (!add_ball(out, trace, ball)) {
-			memset(&out->keyframes[first], 0, (size_t)(out->keyframe_count - first) * sizeof out->keyframes[0]);
+			memset(&out->keyframes[first], 0,
+			       (size_t)(out->keyframe_count - first) * sizeof out->keyframes[0]);
 			out->keyframe_count = first;
 			return;
 		}
@@ -208,10 +209,12 @@ static void add_keyframes(billiard_plan_t *out, billiard_plan_shot_t *shot, cons
 	shot->keyframe_count = out->keyframe_count - first;
 }
 
-void plan_message_fill(billiard_plan_t *out, const struct plan_result *result, const struct table *table, const struct model *model,
-		       struct trace_entry *scratch)
+void plan_message_fill(billiard_plan_t *out, const struct plan_result *result, const struct table *table,
+		       const struct model *model, struct trace_entry *scratch)
 {
-	out->status = result->status == PLAN_CANCELLED ? PLAN_MESSAGE_CANCELLED : result->plan_count ? PLAN_MESSAGE_OK : PLAN_MESSAGE_NONE;
+	out->status = result->status == PLAN_CANCELLED ? PLAN_MESSAGE_CANCELLED
+		      : result->plan_count	       ? PLAN_MESSAGE_OK
+						       : PLAN_MESSAGE_NONE;
 	out->found = result->found;
 	out->nodes = (int64_t)result->nodes;
 	out->sims = (int64_t)result->sims;
@@ -248,21 +251,23 @@ static bool in(long value, long low, long high)
 
 static bool within(double value, double limit)
 {
-	return fabs(value) <= limit;	/* false for NaN */
+	return fabs(value) <= limit; /* false for NaN */
 }
 
 static bool shot_ok(const billiard_plan_t *plan, const billiard_plan_shot_t *shot, const struct table *table)
 {
 	bool ok = in(shot->target, -1, plan->ball_count - 1) && in(shot->pocket, -1, table->pocket_count - 1) &&
-		  in(shot->chain_count, 0, 4) && in(shot->potted_count, 0, 8) && within(shot->angle, 100) && within(shot->speed, 100) &&
-		  within(shot->side, 1) && within(shot->follow, 1) && within(shot->elevation, 2) && isfinite(shot->cost) &&
-		  isfinite(shot->tolerance_angle) && isfinite(shot->tolerance_speed) && within(shot->success, 1) &&
+		  in(shot->chain_count, 0, 4) && in(shot->potted_count, 0, 8) && within(shot->angle, 100) &&
+		  within(shot->speed, 100) && within(shot->side, 1) && within(shot->follow, 1) &&
+		  within(shot->elevation, 2) && isfinite(shot->cost) && isfinite(shot->tolerance_angle) &&
+		  isfinite(shot->tolerance_speed) && within(shot->success, 1) &&
 		  in(shot->keyframe_first, 0, plan->keyframe_count) &&
 		  in(shot->keyframe_count, 0, plan->keyframe_count - shot->keyframe_first);
 	for (int i = 0; ok && i < shot->chain_count; i++)
 		ok = in(shot->chain[i], 0, plan->ball_count - 1);
 	for (int i = 0; ok && i < shot->potted_count; i++)
-		ok = in(shot->potted_ball[i], 0, plan->ball_count - 1) && in(shot->potted_pocket[i], 0, table->pocket_count - 1);
+		ok = in(shot->potted_ball[i], 0, plan->ball_count - 1) &&
+		     in(shot->potted_pocket[i], 0, table->pocket_count - 1);
 	for (int i = 0; ok && i < plan->ball_count; i++)
 		ok = within(shot->start_x[i], PLACE_MAX) && within(shot->start_y[i], PLACE_MAX);
 	return ok;
@@ -270,15 +275,17 @@ static bool shot_ok(const billiard_plan_t *plan, const billiard_plan_shot_t *sho
 
 static bool keyframe_ok(const billiard_keyframe_t *k, int ball_count)
 {
-	return in(k->ball, 0, ball_count - 1) && in(k->phase, 0, BALL_POTTED) && in(k->event, 0, EVENT_KIND_COUNT - 1) &&
-	       k->begin >= 0 && k->begin <= k->end && k->end <= TIME_MAX && within(k->x, PLACE_MAX) && within(k->y, PLACE_MAX) &&
-	       within(k->vx, SPEED_MAX) && within(k->vy, SPEED_MAX) && within(k->ax, SPEED_MAX) && within(k->ay, SPEED_MAX);
+	return in(k->ball, 0, ball_count - 1) && in(k->phase, 0, BALL_POTTED) &&
+	       in(k->event, 0, EVENT_KIND_COUNT - 1) && k->begin >= 0 && k->begin <= k->end && k->end <= TIME_MAX &&
+	       within(k->x, PLACE_MAX) && within(k->y, PLACE_MAX) && within(k->vx, SPEED_MAX) &&
+	       within(k->vy, SPEED_MAX) && within(k->ax, SPEED_MAX) && within(k->ay, SPEED_MAX);
 }
 
 bool plan_message_check(const billiard_plan_t *plan, const struct table *table)
 {
-	bool ok = plan->request_id > 0 && in(plan->status, PLAN_MESSAGE_OK, PLAN_MESSAGE_REFUSED) && in(plan->ball_count, 0, BALL_MAX) &&
-		  in(plan->entry_count, 0, PLAN_MESSAGE_ENTRIES) && in(plan->keyframe_count, 0, PLAN_MESSAGE_KEYFRAMES) &&
+	bool ok = plan->request_id > 0 && in(plan->status, PLAN_MESSAGE_OK, PLAN_MESSAGE_REFUSED) &&
+		  in(plan->ball_count, 0, BALL_MAX) && in(plan->entry_count, 0, PLAN_MESSAGE_ENTRIES) &&
+		  in(plan->keyframe_count, 0, PLAN_MESSAGE_KEYFRAMES) &&
 		  (plan->status != PLAN_MESSAGE_OK || plan->entry_count > 0);
 	for (int i = 0; ok && i < plan->ball_count; i++)
 		ok = in(plan->colours[i], 0, COLOUR_COUNT - 1);
@@ -299,7 +306,8 @@ void plan_message_animation(billiard_animation_t *out, const billiard_plan_t *pl
 	*out = (billiard_animation_t){.plan_id = plan->request_id, .run = 1, .rate = 1, .ball_count = plan->ball_count};
 	memcpy(out->colours, plan->colours, sizeof out->colours);
 	out->keyframe_count = s->keyframe_count;
-	memcpy(out->keyframes, plan->keyframes + s->keyframe_first, (size_t)s->keyframe_count * sizeof out->keyframes[0]);
+	memcpy(out->keyframes, plan->keyframes + s->keyframe_first,
+	       (size_t)s->keyframe_count * sizeof out->keyframes[0]);
 }
 
 bool plan_message_same_motion(const billiard_animation_t *a, const billiard_animation_t *b)
@@ -326,9 +334,9 @@ double plan_message_animation_time(const billiard_animation_t *animation, double
 
 bool plan_message_animation_check(const billiard_animation_t *a)
 {
-	bool ok = in(a->keyframe_count, 0, PLAN_MESSAGE_KEYFRAMES) && in(a->ball_count, 0, BALL_MAX) && a->rate >= 0 && a->rate <= 100 &&
-		  a->pause >= 0 && a->pause <= TIME_MAX && a->position >= 0 && a->position <= TIME_MAX && a->ball_radius >= 0 &&
-		  a->ball_radius < 1;
+	bool ok = in(a->keyframe_count, 0, PLAN_MESSAGE_KEYFRAMES) && in(a->ball_count, 0, BALL_MAX) && a->rate >= 0 &&
+		  a->rate <= 100 && a->pause >= 0 && a->pause <= TIME_MAX && a->position >= 0 &&
+		  a->position <= TIME_MAX && a->ball_radius >= 0 && a->ball_radius < 1;
 	for (int i = 0; ok && i < a->ball_count; i++)
 		ok = in(a->colours[i], 0, COLOUR_COUNT - 1);
 	for (int i = 0; ok && i < a->keyframe_count; i++)

@@ -12,7 +12,7 @@ enum {
 	PLAN_MESSAGE_ENTRIES = 5,
 	PLAN_MESSAGE_SHOTS = 3,
 	PLAN_MESSAGE_KEYFRAMES = 768,
-	PLAN_TRACE_MAX = 2048		/* events of one shot that are looked at */
+	PLAN_TRACE_MAX = 2048 /* events of one shot that are looked at */
 };
 
 enum plan_message_status { PLAN_MESSAGE_OK, PLAN_MESSAGE_NONE, PLAN_MESSAGE_CANCELLED, PLAN_MESSAGE_REFUSED };
@@ -23,14 +23,14 @@ void ball_to_message(billiard_ball_t *out, const struct ball *ball, const char *
 bool ball_from_message(struct ball *out, const billiard_ball_t *ball);
 
 /* A request as it came from the wire, checked against the table. 0, or -EINVAL with the reason. */
-int plan_request_from_message(struct plan_request *out, const billiard_plan_request_t *message, const struct table *table, char *err,
-			      size_t err_size);
+int plan_request_from_message(struct plan_request *out, const billiard_plan_request_t *message,
+			      const struct table *table, char *err, size_t err_size);
 
 /* Names, colours and id of the request; no entries. */
 void plan_message_begin(billiard_plan_t *out, const billiard_plan_request_t *request);
 /* Fills the entries, best first, with the keyframes of their shots as long as there is room. scratch: PLAN_TRACE_MAX entries. */
-void plan_message_fill(billiard_plan_t *out, const struct plan_result *result, const struct table *table, const struct model *model,
-		       struct trace_entry *scratch);
+void plan_message_fill(billiard_plan_t *out, const struct plan_result *result, const struct table *table,
+		       const struct model *model, struct trace_entry *scratch);
 /* True when counts and indices are in range and all numbers finite: to be called on every plan from the wire. */
 bool plan_message_check(const billiard_plan_t *plan, const struct table *table);
 

@@ -11,7 +11,7 @@
 #include <sys/socket.h>
 #include <unistd.h>
 
-enum { DRAIN_MAX = 1000 };	/* messages handled at a time */
+enum { DRAIN_MAX = 1000 }; /* messages handled at a time */
 
 struct subscription {
 	struct bus *bus;
@@ -19,9 +19,10 @@ struct subscription {
 	enum bus_delivery delivery;
 	bus_handler *handler;
 	void *context;
-	void *message, *spare;	/* owned, type->size bytes each; spare: decoded into, so that a bad message spoils no good one */
-	bool pending;		/* BUS_LATEST: message waits for the end of the drain */
-	size_t bytes;		/* of message, encoded */
+	void *message,
+		*spare; /* owned, type->size bytes each; spare: decoded into, so that a bad message spoils no good one */
+	bool pending;	/* BUS_LATEST: message waits for the end of the drain */
+	size_t bytes;	/* of message, encoded */
 	char channel[64];
 };
 
@@ -29,8 +30,8 @@ struct bus {
 	lcm_t *lcm;
 	struct subscription subscription[BUS_SUBSCRIPTION_MAX];
 	int subscription_count;
-	pthread_mutex_t lock;	/* of buffer */
-	uint8_t *buffer;	/* owned, for encoding */
+	pthread_mutex_t lock; /* of buffer */
+	uint8_t *buffer;      /* owned, for encoding */
 	size_t buffer_size;
 	bool is_file;
 	int64_t received, ignored;
@@ -40,20 +41,26 @@ struct bus {
 /* ---- types ---------------------------------------------------------------------------------------------------------- */
 
 /* The generated functions take typed pointers: these wrappers make them callable through struct bus_type. */
-#define TYPE_WRAPPERS(x)                                                                                                   \
-	static int x##_decode_any(const void *bytes, int offset, int max, void *message)                                  \
-	{                                                                                                                  \
-		return billiard_##x##_decode(bytes, offset, max, message);                                                 \
-	}                                                                                                                  \
-	static int x##_size_any(const void *message) { return billiard_##x##_encoded_size(message); }                      \
-	static int x##_encode_any(void *bytes, int offset, int max, const void *message)                                  \
-	{                                                                                                                  \
-		return billiard_##x##_encode(bytes, offset, max, message);                                                 \
-	}                                                                                                                  \
-	static int x##_cleanup_any(void *message) { return billiard_##x##_decode_cleanup(message); }
-#define TYPE(x, checker)                                                                                                   \
-	{                                                                                                                  \
-		#x, sizeof(billiard_##x), x##_decode_any, x##_size_any, x##_encode_any, x##_cleanup_any, checker           \
+#define TYPE_WRAPPERS(x)                                                                                               \
+	static int x##_decode_any(const void *bytes, int offset, int max, void *message)                               \
+	{                                                                                                              \
+		return billiard_##x##_decode(bytes, offset, max, message);                                             \
+	}                                                                                                              \
+	static int x##_size_any(const void *message)                                                                   \
+	{                                                                                                              \
+		return billiard_##x##_encoded_size(message);                                                           \
+	}                                                                                                              \
+	static int x##_encode_any(void *bytes, int offset, int max, const void *message)                               \
+	{                                                                                                              \
+		return billiard_##x##_encode(bytes, offset, max, message);                                             \
+	}                                                                                                              \
+	static int x##_cleanup_any(void *message)                                                                      \
+	{                                                                                                              \
+		return billiard_##x##_decode_cleanup(message);                                                         \
+	}
+#define TYPE(x, checker)                                                                                               \
+	{                                                                                                              \
+#x, sizeof(billiard_##x), x##_decode_any, x##_size_any, x##_encode_any, x##_cleanup_any, checker       \
 	}
 
 TYPE_WRAPPERS(image_t)
@@ -72,7 +79,8 @@ static bool image_size_fits(const void *bytes, size_t size)
 	const uint8_t *b = bytes;
 	if (size < FIXED)
 		return false;
-	uint32_t n = (uint32_t)b[SIZE_AT] << 24 | (uint32_t)b[SIZE_AT + 1] << 16 | (uint32_t)b[SIZE_AT + 2] << 8 | b[SIZE_AT + 3];
+	uint32_t n = (uint32_t)b[SIZE_AT] << 24 | (uint32_t)b[SIZE_AT + 1] << 16 | (uint32_t)b[SIZE_AT + 2] << 8 |
+		     b[SIZE_AT + 3];
 	return n > 0 && n <= BUS_IMAGE_MAX && size == FIXED + (size_t)n;
 }
 
@@ -115,7 +123,8 @@ static int check_route(const char *url, char *err, size_t err_size)
 	int r = connect(fd, (struct sockaddr *)&to, sizeof to) < 0 ? -errno : 0;
 	close(fd);
 	if (r < 0)
-		snprintf(err, err_size, "bus: %s (%s): no route for %s; add it with: ip route replace %s/32 dev lo src 127.0.0.1", url,
+		snprintf(err, err_size,
+			 "bus: %s (%s): no route for %s; add it with: ip route replace %s/32 dev lo src 127.0.0.1", url,
 			 strerror(-r), group, group);
 	return r;
 }
@@ -216,13 +225,14 @@ static void on_message(const lcm_recv_buf_t *rbuf, const char *channel, void *us
 		deliver(s);
 }
 
-int bus_subscribe(struct bus *bus, const char *channel, const struct bus_type *type, enum bus_delivery delivery, bus_handler *handler,
-		  void *context)
+int bus_subscribe(struct bus *bus, const char *channel, const struct bus_type *type, enum bus_delivery delivery,
+		  bus_handler *handler, void *context)
 {
 	if (bus->subscription_count == BUS_SUBSCRIPTION_MAX)
 		return -ENOSPC;
 	struct subscription *s = &bus->subscription[bus->subscription_count];
-	*s = (struct subscription){bus, type, delivery, handler, context, calloc(1, type->size), calloc(1, type->size), false, 0, ""};
+	*s = (struct subscription){
+		bus, type, delivery, handler, context, calloc(1, type->size), calloc(1, type->size), false, 0, ""};
 	snprintf(s->channel, sizeof s->channel, "%s", channel);
 	lcm_subscription_t *l = s->message && s->spare ? lcm_subscribe(bus->lcm, channel, on_message, s) : NULL;
 	if (!l) {

@@ -28,30 +28,30 @@ struct bus_type {
 	int (*cleanup)(void *message);
 	bool (*check)(const void *bytes, size_t size);
 };
-extern const struct bus_type bus_image, bus_table_state, bus_plan_request, bus_plan, bus_draw_list, bus_animation, bus_command,
-	bus_status;
+extern const struct bus_type bus_image, bus_table_state, bus_plan_request, bus_plan, bus_draw_list, bus_animation,
+	bus_command, bus_status;
 
 /* message is borrowed until the handler returns. False: not acceptable (outdated, out of range); it is counted as ignored. */
 typedef bool bus_handler(void *context, const void *message);
 
 enum bus_delivery {
-	BUS_EACH,	/* every message, in order */
-	BUS_LATEST	/* of those that wait, only the newest: for messages that are dear to handle. A newest that the handler refuses costs the others */
+	BUS_EACH,  /* every message, in order */
+	BUS_LATEST /* of those that wait, only the newest: for messages that are dear to handle. A newest that the handler refuses costs the others */
 };
 
-struct bus;	/* opaque */
+struct bus; /* opaque */
 
 /* Opens url. 0, or a negative errno with the reason in err: when the multicast route is missing, it says which and the command
  * that adds it. *out is NULL on failure. Caller closes. Block signals that the loop handles before: LCM starts a thread. */
 int bus_open(struct bus **out, const char *url, char *err, size_t err_size);
-void bus_close(struct bus *bus);	/* NULL is fine */
+void bus_close(struct bus *bus); /* NULL is fine */
 
 /* Address to use: LCM_DEFAULT_URL when it is set, else configured. */
 const char *bus_url(const char *configured);
 
 /* channel: a name, or a regular expression of LCM. 0, -ENOSPC, or -ENOMEM (also: no valid expression). */
-int bus_subscribe(struct bus *bus, const char *channel, const struct bus_type *type, enum bus_delivery delivery, bus_handler *handler,
-		  void *context);
+int bus_subscribe(struct bus *bus, const char *channel, const struct bus_type *type, enum bus_delivery delivery,
+		  bus_handler *handler, void *context);
 /* 0 or -EIO. A lost message is not an error. */
 int bus_publish(struct bus *bus, const char *channel, const struct bus_type *type, const void *message);
 

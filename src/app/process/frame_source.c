@@ -12,20 +12,20 @@
 #include "app/process/process.h"
 #include "vision/capture_cv.h"
 
-static const double REOPEN_PERIOD = 1;	/* s between tries to open a camera that went away */
+static const double REOPEN_PERIOD = 1; /* s between tries to open a camera that went away */
 
 struct frame_source {
 	char source[256];
 	struct capture_def def;
 	double hold;
 	bool is_folder;
-	struct capture *capture;	/* the thread's, NULL while the camera is away */
+	struct capture *capture; /* the thread's, NULL while the camera is away */
 	pthread_t thread;
 	bool thread_runs;
 	int descriptor;
 
-	pthread_mutex_t lock;		/* of all below */
-	pthread_cond_t changed;		/* slot taken, or stop */
+	pthread_mutex_t lock;	/* of all below */
+	pthread_cond_t changed; /* slot taken, or stop */
 	bool stop, full;
 	struct frame_source_frame slot;
 	struct frame_source_figures figures;
@@ -35,7 +35,7 @@ static void wake_loop(struct frame_source *s)
 {
 	uint64_t one = 1;
 	if (write(s->descriptor, &one, sizeof one) < 0)
-		return;	/* full counter: the loop is awake anyway */
+		return; /* full counter: the loop is awake anyway */
 }
 
 static struct timespec deadline_in(double seconds)
@@ -70,7 +70,7 @@ static bool offer(struct frame_source *s, struct frame_source_frame *frame, bool
 	*frame = old;
 	s->full = true;
 	if (live)
-		s->figures.error[0] = '\0';	/* the camera is back */
+		s->figures.error[0] = '\0'; /* the camera is back */
 	bool go_on = !s->stop;
 	pthread_mutex_unlock(&s->lock);
 	wake_loop(s);
@@ -96,13 +96,15 @@ static bool copy_frame(struct frame_source_frame *to, const struct image_buffer 
 	if (image_buffer_reserve(&to->image, i->width, i->height) < 0)
 		return false;
 	for (int y = 0; y < i->height; y++)
-		memcpy(to->image.image.data + y * to->image.image.stride, i->data + y * i->stride, 3 * (size_t)i->width);
+		memcpy(to->image.image.data + y * to->image.image.stride, i->data + y * i->stride,
+		       3 * (size_t)i->width);
 	snprintf(to->name, sizeof to->name, "%s", name);
 	return true;
 }
 
 /* Shows one image as often as the pace and the holding time say. False: stop. */
-static bool show(struct frame_source *s, struct frame_source_frame *frame, const struct image_buffer *image, const char *name)
+static bool show(struct frame_source *s, struct frame_source_frame *frame, const struct image_buffer *image,
+		 const char *name)
 {
 	double period = 1 / s->def.fps;
 	int times = s->is_folder && s->hold > period ? (int)(s->hold / period + 0.5) : 1;
@@ -256,7 +258,7 @@ bool frame_source_take(struct frame_source *s, struct frame_source_frame *frame)
 	pthread_mutex_lock(&s->lock);
 	bool any = s->full;
 	if (read(s->descriptor, &drop, sizeof drop) < 0)
-		drop = 0;	/* nothing to reset */
+		drop = 0; /* nothing to reset */
 	if (any) {
 		struct frame_source_frame old = *frame;
 		*frame = s->slot;

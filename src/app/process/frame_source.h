@@ -9,30 +9,30 @@
 #include "vision/image_io_cv.h"
 
 struct frame_source_def {
-	const char *source;	/* as capture_def.source */
-	int width, height;	/* px, wanted from a camera */
-	double fps;		/* 1/s, pace of files; wanted from a camera */
-	double hold;		/* s each image of a folder is shown, again and again */
+	const char *source; /* as capture_def.source */
+	int width, height;  /* px, wanted from a camera */
+	double fps;	    /* 1/s, pace of files; wanted from a camera */
+	double hold;	    /* s each image of a folder is shown, again and again */
 };
 
 struct frame_source_frame {
-	struct image_buffer image;	/* owned by the taker's struct; reused */
-	int64_t utime;			/* us, when it was taken */
+	struct image_buffer image; /* owned by the taker's struct; reused */
+	int64_t utime;		   /* us, when it was taken */
 	int64_t seq;
 	char name[256];
 };
 
 struct frame_source_figures {
-	int64_t frames, dropped, bad;	/* bad: photographs that are none, attempts to open a camera */
-	bool ended;			/* files: nothing more will come */
-	char error[256];		/* last one of files; of a camera the present one; empty none */
+	int64_t frames, dropped, bad; /* bad: photographs that are none, attempts to open a camera */
+	bool ended;		      /* files: nothing more will come */
+	char error[256];	      /* last one of files; of a camera the present one; empty none */
 };
 
-struct frame_source;	/* opaque */
+struct frame_source; /* opaque */
 /* Starts the thread. A folder or file that cannot be opened is an error at once; a camera is tried again every second. 0, or a negative errno
  * with the reason. Caller destroys. */
 int frame_source_create(struct frame_source **out, const struct frame_source_def *def, char *err, size_t err_size);
-void frame_source_destroy(struct frame_source *source);	/* NULL is fine; joins the thread */
+void frame_source_destroy(struct frame_source *source); /* NULL is fine; joins the thread */
 
 /* Readable when a frame, an error or the end waits. */
 int frame_source_descriptor(const struct frame_source *source);

@@ -38,14 +38,19 @@ struct option_set {
 	struct option options[8];
 };
 enum { OPT_BUS = 256, OPT_SOURCE, OPT_HOLD, OPT_POSITION };
-#define COMMON_OPTIONS                                                                                                             \
-	{"config", required_argument, NULL, 'c'}, {"bus", required_argument, NULL, OPT_BUS}, {"help", no_argument, NULL, 'h'},     \
-	{"version", no_argument, NULL, 'v'}, {NULL, 0, NULL, 0}
+#define COMMON_OPTIONS                                                                                                 \
+	{"config", required_argument, NULL, 'c'}, {"bus", required_argument, NULL, OPT_BUS},                           \
+		{"help", no_argument, NULL, 'h'}, {"version", no_argument, NULL, 'v'},                                 \
+	{                                                                                                              \
+		NULL, 0, NULL, 0                                                                                       \
+	}
 
 static const struct option_set option_sets[] = {
 	{"billiard-vision",
 	 " [--source v4l2:/dev/videoN|dir:FOLDER|file:VIDEO|lcm:CHANNEL] [--hold SECONDS]",
-	 {{"source", required_argument, NULL, OPT_SOURCE}, {"hold", required_argument, NULL, OPT_HOLD}, COMMON_OPTIONS}},
+	 {{"source", required_argument, NULL, OPT_SOURCE},
+	  {"hold", required_argument, NULL, OPT_HOLD},
+	  COMMON_OPTIONS}},
 	{"billiard-table", " [--position FILE]", {{"position", required_argument, NULL, OPT_POSITION}, COMMON_OPTIONS}},
 	{"", "", {COMMON_OPTIONS}},
 };
@@ -139,7 +144,7 @@ void process_state(struct process *process, const char *format, ...)
 	bus_set_text(process->status.state, sizeof process->status.state, text);
 	if (memcmp(before, process->status.state, sizeof before) != 0) {
 		void (*describe)(void *, struct process *) = process->describe;
-		process->describe = NULL;	/* it may call process_state() itself */
+		process->describe = NULL; /* it may call process_state() itself */
 		publish_status(process);
 		process->describe = describe;
 	}
@@ -228,7 +233,8 @@ int process_every(struct process *process, uint64_t period_us, sd_event_time_han
 	uint64_t now;
 	sd_event_now(process->event, CLOCK_MONOTONIC, &now);
 	sd_event_source *source;
-	int r = sd_event_add_time(process->event, &source, CLOCK_MONOTONIC, now + period_us, period_us / 20 + 1, on_repeated, timer);
+	int r = sd_event_add_time(process->event, &source, CLOCK_MONOTONIC, now + period_us, period_us / 20 + 1,
+				  on_repeated, timer);
 	if (r < 0) {
 		free(timer);
 		return r;
@@ -245,13 +251,14 @@ static int watch_signals(struct process *process)
 	sigemptyset(&set);
 	sigaddset(&set, SIGTERM);
 	sigaddset(&set, SIGINT);
-	sigprocmask(SIG_BLOCK, &set, NULL);	/* before lcm_create: its thread inherits the mask */
+	sigprocmask(SIG_BLOCK, &set, NULL); /* before lcm_create: its thread inherits the mask */
 	signal(SIGPIPE, SIG_IGN);
 	int r = sd_event_add_signal(process->event, NULL, SIGTERM, NULL, NULL);
 	return r < 0 ? r : sd_event_add_signal(process->event, NULL, SIGINT, NULL, NULL);
 }
 
-int process_init(struct process *process, const char *name, const struct process_options *options, struct config *config)
+int process_init(struct process *process, const char *name, const struct process_options *options,
+		 struct config *config)
 {
 	*process = (struct process){.name = name};
 	char err[PROCESS_ERROR_SIZE];

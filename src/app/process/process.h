@@ -11,17 +11,17 @@ enum { PROCESS_ERROR_SIZE = 256 };
 
 /* Command line shared by the services. */
 struct process_options {
-	const char *config;	/* -c FILE; the default path when not given; borrowed from argv */
-	const char *bus;	/* --bus URL, NULL: LCM_DEFAULT_URL or the configuration's */
-	const char *source;	/* --source, billiard-vision only; NULL: the configuration's */
-	double hold;		/* --hold, billiard-vision only: s each photograph of a folder is shown */
-	const char *position;	/* --position, billiard-table only; NULL: the opening position of snooker */
+	const char *config;   /* -c FILE; the default path when not given; borrowed from argv */
+	const char *bus;      /* --bus URL, NULL: LCM_DEFAULT_URL or the configuration's */
+	const char *source;   /* --source, billiard-vision only; NULL: the configuration's */
+	double hold;	      /* --hold, billiard-vision only: s each photograph of a folder is shown */
+	const char *position; /* --position, billiard-table only; NULL: the opening position of snooker */
 };
 
 struct process {
-	const char *name;	/* borrowed */
-	sd_event *event;	/* owned */
-	struct bus *bus;	/* owned */
+	const char *name; /* borrowed */
+	sd_event *event;  /* owned */
+	struct bus *bus;  /* owned */
 	billiard_status_t status;
 	/* Called before each STATUS to fill state and metrics; may be NULL. */
 	void (*describe)(void *context, struct process *process);
@@ -33,7 +33,8 @@ struct process {
 int process_parse(struct process_options *out, const char *name, int argc, char **argv);
 
 /* Configuration and bus opened, signals blocked and watched. 0, or a negative errno after one line on stderr. finish() in every case. */
-int process_init(struct process *process, const char *name, const struct process_options *options, struct config *config);
+int process_init(struct process *process, const char *name, const struct process_options *options,
+		 struct config *config);
 /* READY=1, then runs until SIGTERM, SIGINT or sd_event_exit(). Exit status. */
 int process_run(struct process *process);
 void process_finish(struct process *process);

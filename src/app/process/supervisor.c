@@ -89,7 +89,8 @@ static bool any_waits(const struct supervisor *s)
 {
 	for (int i = 0; i < s->count; i++) {
 		int enabled = SD_EVENT_OFF;
-		if (s->service[i].restart && sd_event_source_get_enabled(s->service[i].restart, &enabled) >= 0 && enabled != SD_EVENT_OFF)
+		if (s->service[i].restart && sd_event_source_get_enabled(s->service[i].restart, &enabled) >= 0 &&
+		    enabled != SD_EVENT_OFF)
 			return true;
 	}
 	return false;
@@ -128,8 +129,8 @@ static int on_child(sd_event_source *source, const siginfo_t *info, void *contex
 	if (s->stopping)
 		return any_runs(s) ? 0 : sd_event_exit(s->event, s->status);
 	bool bad_use = info->si_code == CLD_EXITED && info->si_status == 2;
-	fprintf(stderr, "billiard: %s ended (%s %d)%s\n", c->name, info->si_code == CLD_EXITED ? "status" : "signal", info->si_status,
-		bad_use ? ", not started again" : ", starting it again");
+	fprintf(stderr, "billiard: %s ended (%s %d)%s\n", c->name, info->si_code == CLD_EXITED ? "status" : "signal",
+		info->si_status, bad_use ? ", not started again" : ", starting it again");
 	/* Status 2 is a wrong configuration or address: trying again changes nothing. */
 	if (!bad_use)
 		plan_restart(c);

@@ -11,22 +11,22 @@ enum { SUPERVISOR_MAX = 8 };
 
 struct supervised {
 	struct supervisor *supervisor;
-	char name[24];			/* program, found beside this one */
-	char **argv;			/* owned, of the program */
-	pid_t pid;			/* 0: not running */
-	sd_event_source *child, *restart;	/* owned */
+	char name[24];			  /* program, found beside this one */
+	char **argv;			  /* owned, of the program */
+	pid_t pid;			  /* 0: not running */
+	sd_event_source *child, *restart; /* owned */
 	int restarts;
 };
 
 struct supervisor {
-	sd_event *event;		/* borrowed */
-	const char *config;		/* borrowed, passed on as -c */
-	const char *bus;		/* borrowed, passed on as --bus; NULL: not */
+	sd_event *event;    /* borrowed */
+	const char *config; /* borrowed, passed on as -c */
+	const char *bus;    /* borrowed, passed on as --bus; NULL: not */
 	struct supervised service[SUPERVISOR_MAX];
 	int count;
 	bool stopping;
-	int status;			/* to exit with when all have gone */
-	sd_event_source *kill_timer;	/* owned */
+	int status;		     /* to exit with when all have gone */
+	sd_event_source *kill_timer; /* owned */
 };
 
 /* Blocks SIGCHLD, as sd-event needs it: to be called before other threads exist (a bus starts one). */

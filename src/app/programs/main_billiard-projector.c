@@ -15,12 +15,12 @@ struct projector {
 	struct process process;
 	struct config config;
 	struct render *render;
-	struct window *window;		/* NULL without a display */
+	struct window *window; /* NULL without a display */
 	billiard_draw_list_t list;
 	struct animation animation;
 	bool dirty;
 	int64_t pictures;
-	double work;			/* s, of the last picture */
+	double work; /* s, of the last picture */
 };
 
 /* ---- messages ------------------------------------------------------------------------------------------------------- */

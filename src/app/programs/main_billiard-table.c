@@ -17,21 +17,21 @@
 struct virtual_process {
 	struct process process;
 	struct config config;
-	struct virtual_table *table;		/* owned */
-	struct table_camera *camera;		/* owned */
-	struct render *render;			/* owned: the projector's picture */
+	struct virtual_table *table; /* owned */
+	struct table_camera *camera; /* owned */
+	struct render *render;	     /* owned: the projector's picture */
 	struct image_buffer frame;
 	struct byte_buffer jpeg;
 	char name[BALL_MAX][BALL_NAME_SIZE];
 	billiard_draw_list_t list;
 	struct animation animation;
-	bool lit;				/* the camera has the light of list; false: draw it anew */
+	bool lit; /* the camera has the light of list; false: draw it anew */
 	billiard_plan_t plan;
-	int64_t wanted_id;			/* proposal on the table that was not played yet, 0 none */
-	double wanted_at;			/* s, when it was first seen there */
+	int64_t wanted_id; /* proposal on the table that was not played yet, 0 none */
+	double wanted_at;  /* s, when it was first seen there */
 	int64_t frames;
 	int points;
-	double work;				/* s, of the last frame */
+	double work; /* s, of the last frame */
 };
 
 /* ---- the table as it is --------------------------------------------------------------------------------------------- */
@@ -80,7 +80,8 @@ static void rack_again(struct virtual_process *p)
 	struct ball rack[BALL_MAX];
 	player_rack(&p->config.table, rack);
 	p->config.virtual_table.seed++;
-	player_init(p->table, &p->config.table, &p->config.model, &p->config.virtual_table, p->config.infinity.rules, rack, BALL_MAX);
+	player_init(p->table, &p->config.table, &p->config.model, &p->config.virtual_table, p->config.infinity.rules,
+		    rack, BALL_MAX);
 	name_balls(p, NULL);
 }
 
@@ -100,8 +101,8 @@ static void end_shot(struct virtual_process *p, int64_t utime, double now)
 static void play_wanted(struct virtual_process *p, double now)
 {
 	char err[PROCESS_ERROR_SIZE];
-	if (!p->wanted_id || p->table->running || p->plan.request_id != p->wanted_id || p->plan.status != PLAN_MESSAGE_OK ||
-	    now - p->wanted_at < p->config.virtual_table.think_time)
+	if (!p->wanted_id || p->table->running || p->plan.request_id != p->wanted_id ||
+	    p->plan.status != PLAN_MESSAGE_OK || now - p->wanted_at < p->config.virtual_table.think_time)
 		return;
 	const billiard_plan_shot_t *s = &p->plan.entries[0].shots[0];
 	struct shot shot = {s->angle, s->speed, s->side, s->follow, s->elevation};
@@ -116,7 +117,8 @@ static void light(struct virtual_process *p, double now)
 	if (p->lit && !animation_runs(&p->animation))
 		return;
 	int width, height, stride;
-	render_draw(p->render, &p->list, animation_is_shown(&p->animation) ? &p->animation.message : NULL, animation_time(&p->animation, now));
+	render_draw(p->render, &p->list, animation_is_shown(&p->animation) ? &p->animation.message : NULL,
+		    animation_time(&p->animation, now));
 	const uint32_t *pixels = render_pixels(p->render, &width, &height, &stride);
 	table_camera_light(p->camera, pixels, width, height, stride);
 	p->lit = true;
@@ -215,7 +217,8 @@ static int set_balls(struct virtual_process *p, const char *path, char *err, siz
 		player_rack(&c->table, position.ball);
 		position.count = BALL_MAX;
 	}
-	player_init(p->table, &c->table, &c->model, &c->virtual_table, c->infinity.rules, position.ball, position.count);
+	player_init(p->table, &c->table, &c->model, &c->virtual_table, c->infinity.rules, position.ball,
+		    position.count);
 	name_balls(p, path ? &position : NULL);
 	return 0;
 }
@@ -228,7 +231,8 @@ static int create_parts(struct virtual_process *p, const struct process_options 
 		snprintf(err, err_size, "out of memory");
 		return r;
 	}
-	if ((r = set_balls(p, options->position, err, err_size)) < 0 || (r = table_camera_create(&p->camera, &p->config, err, err_size)) < 0)
+	if ((r = set_balls(p, options->position, err, err_size)) < 0 ||
+	    (r = table_camera_create(&p->camera, &p->config, err, err_size)) < 0)
 		return r;
 	return render_create(&p->render, &p->config.projector, err, err_size);
 }

@@ -9,10 +9,10 @@
 #include "app/process/process.h"
 #include "vision/vision.h"
 
-static const double FILE_FPS = 10, CAMERA_FPS = 30;	/* 1/s */
+static const double FILE_FPS = 10, CAMERA_FPS = 30; /* 1/s */
 static const char CHANNEL_CHARACTERS[] = "ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789_-";
-enum { DARK_FRAMES = 6 };	/* more than the controller forgives */
-static const double SILENCE = 1;	/* s without a frame until the table counts as unseen */
+enum { DARK_FRAMES = 6 };	 /* more than the controller forgives */
+static const double SILENCE = 1; /* s without a frame until the table counts as unseen */
 enum { JPEG_QUALITY = 92, SOURCE_TICK_US = 500000, LATENCY_US = 500000 };
 
 struct vision_process {
@@ -20,20 +20,20 @@ struct vision_process {
 	struct config config;
 	struct colour_model colours;
 	struct vision *vision;
-	struct frame_source *source;	/* NULL: frames come from the bus */
+	struct frame_source *source; /* NULL: frames come from the bus */
 	struct frame_source_frame frame;
 	struct byte_buffer jpeg;
 	struct vision_result result;
 	billiard_table_state_t state;
-	int64_t last_camera;		/* us, of the last CAMERA message */
-	int64_t last_frame;		/* us, of the last frame, by the source's clock */
-	double last_arrival;		/* s, monotonic, when it came */
+	int64_t last_camera; /* us, of the last CAMERA message */
+	int64_t last_frame;  /* us, of the last frame, by the source's clock */
+	double last_arrival; /* s, monotonic, when it came */
 	int64_t frames, bad;
-	bool folder;			/* source is a folder of photographs */
-	char picture[256];		/* the photograph shown */
-	int dark;			/* frames until it is looked at */
-	double rate;			/* 1/s, smoothed */
-	double latency, work;		/* s, of the last frame */
+	bool folder;	      /* source is a folder of photographs */
+	char picture[256];    /* the photograph shown */
+	int dark;	      /* frames until it is looked at */
+	double rate;	      /* 1/s, smoothed */
+	double latency, work; /* s, of the last frame */
 };
 
 /* ---- one frame ------------------------------------------------------------------------------------------------------ */
@@ -42,7 +42,8 @@ struct vision_process {
 static void fill_balls(billiard_table_state_t *out, const struct vision_result *result)
 {
 	bool taken[VISION_BALL_MAX] = {false};
-	for (out->ball_count = 0; out->ball_count < BALL_MAX && out->ball_count < result->ball_count; out->ball_count++) {
+	for (out->ball_count = 0; out->ball_count < BALL_MAX && out->ball_count < result->ball_count;
+	     out->ball_count++) {
 		int best = -1;
 		for (int i = 0; i < result->ball_count; i++)
 			if (!taken[i] && (best < 0 || result->ball[i].confidence > result->ball[best].confidence))
@@ -134,7 +135,8 @@ static void publish_camera(struct vision_process *p)
 		process_error(&p->process, "CAMERA: %s", err);
 		return;
 	}
-	billiard_image_t message = {p->frame.utime, p->frame.seq, frame->width, frame->height, (int32_t)p->jpeg.size, p->jpeg.data};
+	billiard_image_t message = {p->frame.utime, p->frame.seq,	   frame->width,
+				    frame->height,  (int32_t)p->jpeg.size, p->jpeg.data};
 	bus_publish(p->process.bus, "CAMERA", &bus_image, &message);
 }
 
@@ -196,11 +198,12 @@ static int on_silence(sd_event_source *event, uint64_t usec, void *context)
 		return 0;
 	p->rate = 0;
 	p->result = (struct vision_result){.calibration = CALIBRATION_NONE};
-	snprintf(p->result.reason, sizeof p->result.reason, "no frames: %.70s", f.error[0] ? f.error : "the source is silent");
+	snprintf(p->result.reason, sizeof p->result.reason, "no frames: %.70s",
+		 f.error[0] ? f.error : "the source is silent");
 	process_state(&p->process, "no frames");
 	/* In the source's clock: a replayed recording has its own. */
 	int64_t utime = p->last_frame ? p->last_frame + (int64_t)(1e6 * silent) : process_utime();
-	utime -= LATENCY_US;	/* a frame under way must not count as older */
+	utime -= LATENCY_US; /* a frame under way must not count as older */
 	publish_state(p, utime, 0);
 	return 0;
 }
@@ -235,12 +238,15 @@ static int open_source(struct vision_process *p, const struct process_options *o
 		}
 		return bus_subscribe(p->process.bus, source + 4, &bus_image, BUS_LATEST, on_camera, p);
 	}
-	struct frame_source_def def = {source, p->config.camera.width, p->config.camera.height, FILE_FPS, options->hold};
+	struct frame_source_def def = {source, p->config.camera.width, p->config.camera.height, FILE_FPS,
+				       options->hold};
 	if (strncmp(source, "v4l2:", 5) == 0)
 		def.fps = CAMERA_FPS;
 	p->folder = strncmp(source, "dir:", 4) == 0;
 	int r = frame_source_create(&p->source, &def, err, err_size);
-	return r < 0 ? r : sd_event_add_io(p->process.event, NULL, frame_source_descriptor(p->source), EPOLLIN, on_source, p);
+	return r < 0 ? r
+		     : sd_event_add_io(p->process.event, NULL, frame_source_descriptor(p->source), EPOLLIN, on_source,
+				       p);
 }
 
 static int create_vision(struct vision_process *p, char *err, size_t err_size)

@@ -34,7 +34,7 @@ static int run(const struct command *command, int argc, char **argv)
 	char name[48];
 	snprintf(name, sizeof name, "billiard %s", command->name);
 	argv[0] = name;
-	optind = 0;	/* glibc: begin anew, with that command's own options */
+	optind = 0; /* glibc: begin anew, with that command's own options */
 	int status = command->run(argc, argv);
 	if (fflush(stdout) == EOF && status == CMD_OK) {
 		fprintf(stderr, "%s: cannot write the output\n", name);

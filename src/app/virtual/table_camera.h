@@ -6,7 +6,7 @@
 #include "app/config/config.h"
 #include "vision/image.h"
 
-struct table_camera;	/* opaque: precomputed background, projector map, scratch */
+struct table_camera; /* opaque: precomputed background, projector map, scratch */
 /* 0, -EINVAL, -ENOMEM with reason. Caller destroys. Camera pose from config->virtual_table, intrinsics from
  * config->camera. The configuration is copied. */
 int table_camera_create(struct table_camera **out, const struct config *config, char *err, size_t err_size);
