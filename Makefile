@@ -24,11 +24,11 @@ SEARCH := candidate cost crew figures frontier geometry plan play pool rank refi
 VISION := calibration camera colour detect fit linear marker_edges outline pose reason scan seeds stabilise stages track vision
 VISION_CV := capture_cv image_io_cv markers_cv marker_image_cv
 # app: what the programs share, room by room
-APP_PROCESS := bus process supervisor frame_source
+APP_PROCESS := ball_message bus clock frame_source process supervisor text
 APP_CONFIG := config config_reader config_table config_vision text_file position shot_file colour_file
 APP_CONTROL := fsm stability controller
 APP_LIGHT := animation draw draw_field draw_path draw_proposal render window
-APP_PLANNER := plan_message planner_service
+APP_PLANNER := plan_check plan_message planner_service request_message
 APP_VIRTUAL := table_scene table_camera table_camera_ball player
 APP_COMMANDS := cmd cmd_calibrate cmd_demo cmd_detect cmd_plan cmd_run cmd_simulate cmd_status overlay plot
 APP := $(addprefix process/,$(APP_PROCESS)) $(addprefix config/,$(APP_CONFIG)) $(addprefix control/,$(APP_CONTROL)) \

@@ -11,6 +11,7 @@
 #include <string.h>
 #include <unistd.h>
 
+#include "app/process/clock.h"
 #include "app/process/process.h"
 #include "planner_client.h"
 #include "report.h"
@@ -134,7 +135,7 @@ static void bench_manager(struct report *report, const char *scheme)
 		wait_final();
 	}
 	client_wait(&client, 0.1);
-	for (double end = process_seconds(NULL) + 1.5; process_seconds(NULL) < end;) { /* the next STATUS */
+	for (double end = clock_seconds() + 1.5; clock_seconds() < end;) { /* the next STATUS */
 		poll(NULL, 0, 100);
 		client_wait(&client, 0);
 	}
@@ -151,7 +152,7 @@ static void bench_cancel(struct report *report, const char *scheme)
 		if (!client_wait_first(&client, 10))
 			stop("no first answer came");
 		poll(NULL, 0, 5 + n % 7);
-		double begin = process_seconds(NULL);
+		double begin = clock_seconds();
 		client_cancel(&client, client.id);
 		wait_final();
 		took[n] = 1e3 * (client.last - begin);
@@ -167,10 +168,10 @@ static void bench_ends(struct report *report, const char *scheme)
 		fill_endless(i);
 		client_ask(&client);
 		client_wait_first(&client, 10);
-		double begin = process_seconds(NULL);
+		double begin = clock_seconds();
 		kill(client.pid, i % 2 ? SIGKILL : SIGTERM);
 		fixture_end(client.pid, 10);
-		double ended = process_seconds(NULL);
+		double ended = clock_seconds();
 		if (i % 2 == 0)
 			end = fmax(end, 1e3 * (ended - begin));
 		client_start(&client);
@@ -194,13 +195,13 @@ static void bench_idle(struct report *report)
 
 static void bench_flood(struct report *report)
 {
-	double begin = process_seconds(NULL);
+	double begin = clock_seconds();
 	int64_t finals = client.finals;
 	for (int i = 0; i < FLOOD_RATE * FLOOD_SECONDS; i++) {
 		fill_endless(i % 8);
 		client.request.budget_s = 0.05;
 		client_ask(&client);
-		double left = begin + (double)(i + 1) / FLOOD_RATE - process_seconds(NULL);
+		double left = begin + (double)(i + 1) / FLOOD_RATE - clock_seconds();
 		client_wait(&client, left > 0 ? left : 0);
 	}
 	wait_final();
@@ -213,7 +214,7 @@ static void bench_memory(struct report *report)
 {
 	struct random random = {2};
 	long before = 0;
-	double begin = process_seconds(NULL);
+	double begin = clock_seconds();
 	for (int n = 0; n < REQUESTS; n++) {
 		fill(&random, n);
 		client.request.depth = 1;
@@ -223,7 +224,7 @@ static void bench_memory(struct report *report)
 			before = client_memory(&client);
 	}
 	report_number(report, "planner.memory_growth", (double)(client_memory(&client) - before), "KiB");
-	report_number(report, "planner.request_mean", 1e3 * (process_seconds(NULL) - begin) / REQUESTS, "ms");
+	report_number(report, "planner.request_mean", 1e3 * (clock_seconds() - begin) / REQUESTS, "ms");
 }
 
 /* A test only because the client is made of Check's assertions. */

@@ -11,6 +11,9 @@
 #include <string.h>
 #include <unistd.h>
 
+#include "app/process/clock.h"
+#include "app/planner/plan_check.h"
+#include "app/planner/plan_message.h"
 #include "app/process/process.h"
 #include "planner_client.h"
 #include "report.h"
@@ -94,7 +97,7 @@ static void expect_answer(int wanted)
 		ask_again(over);
 	seen.late += over > slack;
 	seen.worst = fmax(seen.worst, over);
-	if (client.plan.status != wanted || !plan_message_check(&client.plan, &config.table)) {
+	if (client.plan.status != wanted || !plan_check(&client.plan, &config.table)) {
 		seen.wrong++;
 		printf("request %lld: status %d, wanted %d, %.90s\n", (long long)client.id, client.plan.status, wanted,
 		       (const char *)client.plan.reason);
@@ -219,7 +222,7 @@ START_TEST(soak)
 	static void (*const act[])(struct random * random) = {plain,	plain,	 plain,	  plain,    cancelled,
 							      replaced, refused, garbage, repeated, stopped};
 	const char *text = getenv("EVAL_SOAK");
-	double seconds = text ? strtod(text, NULL) : 600, end = process_seconds(NULL) + seconds;
+	double seconds = text ? strtod(text, NULL) : 600, end = clock_seconds() + seconds;
 	char self[4096], err[640];
 	ssize_t n = readlink("/proc/self/exe", self, sizeof self - 1);
 	ck_assert(n > 0 && config_load(&config, "config/thesis-table.conf", err, sizeof err) == 0);
@@ -227,7 +230,7 @@ START_TEST(soak)
 	struct random random = random_begin("soak of the planner");
 	client_begin(&client, &(struct planner_setup){NULL, 2, NULL});
 	long before = 0, growth = 0;
-	for (int i = 1; process_seconds(NULL) < end && seen.unanswered == 0; i++) {
+	for (int i = 1; clock_seconds() < end && seen.unanswered == 0; i++) {
 		seen.requests++;
 		if (i % 500 == 0)
 			ended(&random);

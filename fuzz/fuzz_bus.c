@@ -5,6 +5,10 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "app/process/text.h"
+#include "app/planner/plan_check.h"
+#include "app/planner/request_message.h"
+#include "app/light/animation.h"
 #include "app/process/bus.h"
 #include "app/config/config.h"
 #include "app/control/controller.h"
@@ -34,14 +38,14 @@ static void use_plan(const billiard_plan_t *plan)
 	static billiard_draw_list_t list;
 	static billiard_animation_t animation;
 	static const struct draw_options all = {true, true, true, true};
-	if (!plan_message_check(plan, &config.table) || plan->entry_count == 0)
+	if (!plan_check(plan, &config.table) || plan->entry_count == 0)
 		return;
 	draw_proposal(&list, &config.table, plan, 0, 0, &all);
 	draw_check(&list);
 	plan_message_animation(&animation, plan, 0, 0);
-	if (!plan_message_animation_check(&animation))
+	if (!animation_check(&animation))
 		abort();
-	plan_message_animation_time(&animation, 1);
+	animation_position(&animation, 1);
 }
 
 static void use(const struct bus_type *type, const void *message)
@@ -58,13 +62,13 @@ static void use(const struct bus_type *type, const void *message)
 	} else if (type == &bus_draw_list) {
 		draw_check(message);
 	} else if (type == &bus_animation) {
-		if (plan_message_animation_check(message))
-			plan_message_animation_time(message, 1);
+		if (animation_check(message))
+			animation_position(message, 1);
 	} else if (type == &bus_command) {
 		controller_command(&controller, message, 1);
 	} else if (type == &bus_status) {
 		const billiard_status_t *s = message;
-		bus_text(text, sizeof text, s->error, sizeof s->error);
+		text_get(text, sizeof text, s->error, sizeof s->error);
 	}
 }
 

@@ -14,6 +14,7 @@
 #include <sys/wait.h>
 #include <unistd.h>
 
+#include "app/process/clock.h"
 #include "app/process/process.h"
 
 /* Sanitizers and the leak check at the end take their time. */
@@ -52,10 +53,10 @@ struct bus *fixture_bus(void)
 
 bool fixture_wait(struct bus *bus, bool (*condition)(void), double seconds)
 {
-	double end = process_seconds(NULL) + SLOWER * seconds;
+	double end = clock_seconds() + SLOWER * seconds;
 	struct pollfd fd = {bus_descriptor(bus), POLLIN, 0};
 	while (!condition()) {
-		double left = end - process_seconds(NULL);
+		double left = end - clock_seconds();
 		if (left <= 0)
 			return false;
 		poll(&fd, 1, left < 0.02 ? 1 : 20); /* the condition may be about something else than the bus */
@@ -153,7 +154,7 @@ static void forget(pid_t pid)
 
 int fixture_end(pid_t pid, double seconds)
 {
-	double end = process_seconds(NULL) + SLOWER * seconds;
+	double end = clock_seconds() + SLOWER * seconds;
 	for (;;) {
 		int status;
 		pid_t r = waitpid(pid, &status, WNOHANG);
@@ -162,7 +163,7 @@ int fixture_end(pid_t pid, double seconds)
 			forget(pid);
 			return WIFEXITED(status) ? WEXITSTATUS(status) : 128 + WTERMSIG(status);
 		}
-		if (process_seconds(NULL) > end)
+		if (clock_seconds() > end)
 			return -1;
 		poll(NULL, 0, 2);
 	}

@@ -7,6 +7,10 @@
 #include <string.h>
 #include <unistd.h>
 
+#include "app/process/text.h"
+#include "app/process/clock.h"
+#include "app/process/ball_message.h"
+#include "app/planner/plan_message.h"
 #include "app/process/process.h"
 
 static char conf[128];
@@ -15,7 +19,7 @@ static bool on_plan(void *context, const void *message)
 {
 	struct planner_client *c = context;
 	const billiard_plan_t *plan = message;
-	double now = process_seconds(NULL);
+	double now = clock_seconds();
 	c->finals += plan->is_final;
 	c->cancelled += plan->is_final && plan->status == PLAN_MESSAGE_CANCELLED;
 	c->refused += plan->is_final && plan->status == PLAN_MESSAGE_REFUSED;
@@ -66,9 +70,9 @@ void client_start(struct planner_client *client)
 	client->pid = fixture_start("billiard-planner", (const char *const[]){"-c", conf, NULL});
 	billiard_plan_request_t kept = client->request;
 	client_fill(client, ball, 2);
-	double end = process_seconds(NULL) + 20;
+	double end = clock_seconds() + 20;
 	do {
-		ck_assert(process_seconds(NULL) < end);
+		ck_assert(clock_seconds() < end);
 		client_ask(client);
 	} while (!client_wait(client, 0.2));
 	client->request = kept;
@@ -112,33 +116,33 @@ void client_ask(struct planner_client *client)
 	client->id++;
 	client->first = client->last = 0;
 	client->plans = 0;
-	client->sent = process_seconds(NULL);
-	client->request.utime = process_utime();
+	client->sent = clock_seconds();
+	client->request.utime = clock_utime();
 	client_repeat(client);
 }
 
 void client_cancel(struct planner_client *client, int64_t id)
 {
-	billiard_command_t command = {.utime = process_utime()};
+	billiard_command_t command = {.utime = clock_utime()};
 	char text[24];
 	snprintf(text, sizeof text, "%lld", (long long)id);
-	bus_set_text(command.target, sizeof command.target, "billiard-planner");
-	bus_set_text(command.name, sizeof command.name, "cancel");
-	bus_set_text(command.argument, sizeof command.argument, text);
+	text_set(command.target, sizeof command.target, "billiard-planner");
+	text_set(command.name, sizeof command.name, "cancel");
+	text_set(command.argument, sizeof command.argument, text);
 	bus_publish(client->bus, "COMMAND", &bus_command, &command);
 }
 
 static bool wait_for(struct planner_client *client, const double *what, double seconds)
 {
-	double end = process_seconds(NULL) + seconds;
+	double end = clock_seconds() + seconds;
 	struct pollfd fd = {bus_descriptor(client->bus), POLLIN, 0};
 	do {
-		double left = end - process_seconds(NULL);
+		double left = end - clock_seconds();
 		struct timespec t = {(time_t)fmax(left, 0), (long)(1e9 * fmod(fmax(left, 0), 1))};
 		if (*what == 0)
 			ppoll(&fd, 1, &t, NULL);
 		ck_assert_int_eq(bus_drain(client->bus), 0);
-	} while (*what == 0 && process_seconds(NULL) < end);
+	} while (*what == 0 && clock_seconds() < end);
 	return *what != 0;
 }
 

@@ -4,8 +4,8 @@
 
 #include <sys/types.h>
 
-#include "app/planner/plan_message.h"
 #include "bus_fixture.h"
+#include "physics/ball.h"
 
 /* How the planner is to be configured. */
 struct planner_setup {

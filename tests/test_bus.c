@@ -1,3 +1,4 @@
+#include "app/process/text.h"
 #include "app/process/bus.h"
 
 #include <arpa/inet.h>
@@ -358,16 +359,16 @@ START_TEST(texts_are_cut_and_cleaned)
 	uint8_t bytes[8];
 	char text[32];
 	memset(bytes, 'x', sizeof bytes);
-	bus_set_text(bytes, sizeof bytes, "ab");
+	text_set(bytes, sizeof bytes, "ab");
 	ck_assert_int_eq(memcmp(bytes, "ab\0\0\0\0\0", 8), 0);
-	bus_set_text(bytes, sizeof bytes, "abcdefghijk");
+	text_set(bytes, sizeof bytes, "abcdefghijk");
 	ck_assert_int_eq(memcmp(bytes, "abcdefg", 8), 0);
 	memcpy(bytes, "a\nb\x7f\x1b[31m", 8); /* no end, and what a terminal would obey */
-	bus_text(text, sizeof text, bytes, sizeof bytes);
+	text_get(text, sizeof text, bytes, sizeof bytes);
 	ck_assert_str_eq(text, "a?b??[31");
-	bus_text(text, 4, bytes, sizeof bytes);
+	text_get(text, 4, bytes, sizeof bytes);
 	ck_assert_str_eq(text, "a?b");
-	bus_text(text, 1, bytes, sizeof bytes);
+	text_get(text, 1, bytes, sizeof bytes);
 	ck_assert_str_eq(text, "");
 }
 END_TEST

@@ -1,3 +1,8 @@
+#include "app/process/text.h"
+#include "app/process/ball_message.h"
+#include "app/planner/request_message.h"
+#include "app/light/animation.h"
+#include "app/planner/plan_message.h"
 #include "app/control/controller.h"
 
 #include <math.h>
@@ -112,8 +117,8 @@ static billiard_plan_t *answer(int8_t status, double angle)
 static bool command(const char *name, const char *argument)
 {
 	billiard_command_t m = {.utime = 1};
-	bus_set_text(m.name, sizeof m.name, name);
-	bus_set_text(m.argument, sizeof m.argument, argument);
+	text_set(m.name, sizeof m.name, name);
+	text_set(m.argument, sizeof m.argument, argument);
 	bool ok = controller_command(&c, &m, now);
 	flush();
 	return ok;
@@ -158,7 +163,7 @@ START_TEST(an_answer_is_drawn_and_stays)
 	ck_assert(draw_check(&c.draw));
 	ck_assert_int_eq(c.draw.plan_id, c.request.id);
 	ck_assert_int_gt(c.draw.item_count, 0);
-	ck_assert(plan_message_animation_check(&c.animation) && c.animation.keyframe_count == 1 && c.animation.run);
+	ck_assert(animation_check(&c.animation) && c.animation.keyframe_count == 1 && c.animation.run);
 	int64_t before = draws;
 	frames(MANY);
 	ck_assert(draws == before && requests == 1 && c.proposals == 1);
@@ -211,7 +216,7 @@ START_TEST(no_plan_is_said_on_the_table)
 {
 	frames(MANY);
 	billiard_plan_t *plan = answer(PLAN_MESSAGE_NONE, 0);
-	bus_set_text(plan->reason, sizeof plan->reason, "no shot found");
+	text_set(plan->reason, sizeof plan->reason, "no shot found");
 	ck_assert(controller_plan(&c, plan, now));
 	ck_assert_int_eq(c.fsm.state, FSM_SHOWING);
 	ck_assert_str_eq(c.drawn_note, "no shot found");
@@ -324,12 +329,12 @@ START_TEST(lost_calibration_clears_and_says_why)
 	proposed();
 	state.calibration = 0;
 	state.ball_count = 0;
-	bus_set_text(state.reason, sizeof state.reason, "2 of 4 markers");
+	text_set(state.reason, sizeof state.reason, "2 of 4 markers");
 	frames(10);
 	ck_assert_int_eq(c.fsm.state, FSM_BLIND);
 	ck_assert_str_eq(c.drawn_note, "not calibrated: 2 of 4 markers");
 	ck_assert(c.draw.plan_id == 0 && draw_check(&c.draw));
-	bus_set_text(state.reason, sizeof state.reason, "no markers");
+	text_set(state.reason, sizeof state.reason, "no markers");
 	frames(1);
 	ck_assert_str_eq(c.drawn_note, "not calibrated: no markers");
 	int64_t before = draws;
@@ -439,7 +444,7 @@ START_TEST(the_animation_stops_seeks_and_restarts)
 	now += 0.25;
 	command("animation-seek", "0.5");
 	ck_assert_double_eq_tol(c.animation.position, 0.75, 1e-9);
-	ck_assert(plan_message_animation_check(&c.animation));
+	ck_assert(animation_check(&c.animation));
 	command("animation-restart", "");
 	ck_assert(c.animation.position == 0 && c.animation.run);
 	command("animation", "");
@@ -453,8 +458,8 @@ START_TEST(commands_for_others_are_left_to_them)
 {
 	proposed();
 	billiard_command_t m = {.utime = 1};
-	bus_set_text(m.name, sizeof m.name, "pause");
-	bus_set_text(m.target, sizeof m.target, "billiard-vision");
+	text_set(m.name, sizeof m.name, "pause");
+	text_set(m.target, sizeof m.target, "billiard-vision");
 	ck_assert(controller_command(&c, &m, now));
 	ck_assert_int_eq(c.fsm.state, FSM_SHOWING);
 	ck_assert(command("snapshot", "x.png") && command("", "") && command("cancel", "5"));
@@ -501,7 +506,7 @@ static uint64_t storm(uint64_t seed)
 			place(0, COLOUR_WHITE, random_in(&random, -0.9, 0.9), random_in(&random, -0.4, 0.4));
 		frame();
 		ck_assert(draw_check(&c.draw));
-		ck_assert(plan_message_animation_check(&c.animation));
+		ck_assert(animation_check(&c.animation));
 		h = hash(h, &c.draw, sizeof c.draw);
 		h = hash(h, &c.animation, sizeof c.animation);
 		h = hash(h, &c.request, sizeof c.request);

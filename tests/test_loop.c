@@ -4,6 +4,7 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "app/process/clock.h"
 #include "app/process/process.h"
 #include "harness.h"
 #include "service_fixture.h"
@@ -34,7 +35,7 @@ START_TEST(the_loop_survives_the_death_of_each)
 		kill(pid[i], SIGKILL);
 		ck_assert_int_eq(fixture_end(pid[i], 2), 128 + SIGKILL);
 		pid[i] = service_start(programs[i]);
-		threshold = process_utime();
+		threshold = clock_utime();
 		ck_assert_msg(fixture_wait(bus, proposal_newer, 30),
 			      "no proposal after the restart of %s; infinity is %s, %d balls", programs[i],
 			      service_status(pid[2])->state, heard.state.ball_count);

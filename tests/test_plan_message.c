@@ -1,3 +1,7 @@
+#include "app/process/ball_message.h"
+#include "app/planner/plan_check.h"
+#include "app/planner/request_message.h"
+#include "app/light/animation.h"
 #include "app/planner/plan_message.h"
 
 #include <errno.h>
@@ -225,7 +229,7 @@ START_TEST(answers_name_their_request)
 		ck_assert_int_eq(plan.colours[i], request.balls[i].colour);
 		ck_assert_int_eq(memcmp(plan.names[i], request.balls[i].name, sizeof plan.names[i]), 0);
 	}
-	ck_assert(plan_message_check(&plan, &config.table));
+	ck_assert(plan_check(&plan, &config.table));
 }
 END_TEST
 
@@ -236,7 +240,7 @@ START_TEST(a_request_with_an_absurd_count_gets_an_answer_in_range)
 		request.ball_count = counts[i];
 		plan_message_begin(&plan, &request);
 		plan.status = PLAN_MESSAGE_REFUSED;
-		ck_assert(plan_message_check(&plan, &config.table));
+		ck_assert(plan_check(&plan, &config.table));
 	}
 }
 END_TEST
@@ -370,7 +374,7 @@ START_TEST(too_many_keyframes_leave_whole_shots_out)
 	ck_assert_msg(rc == 0, "%s", err);
 	plan_message_begin(&plan, &request);
 	plan_message_fill(&plan, &result, &config.table, &config.model, scratch);
-	ck_assert(result.plan_count == 0 || plan_message_check(&plan, &config.table));
+	ck_assert(result.plan_count == 0 || plan_check(&plan, &config.table));
 	int used = 0;
 	for (int i = 0; i < plan.entry_count; i++)
 		for (int k = 0; k < plan.entries[i].shot_count; k++)
@@ -386,7 +390,7 @@ START_TEST(malformed_plans_are_refused)
 	billiard_plan_t *bad = malloc(sizeof *bad);
 	ck_assert_ptr_nonnull(bad);
 #define BAD(field, value)                                                                                              \
-	(*bad = plan, bad->field = (value), ck_assert_msg(!plan_message_check(bad, &config.table), #field " = " #value))
+	(*bad = plan, bad->field = (value), ck_assert_msg(!plan_check(bad, &config.table), #field " = " #value))
 	BAD(request_id, 0);
 	BAD(status, -1);
 	BAD(status, 4);
@@ -455,7 +459,7 @@ START_TEST(plans_survive_the_wire)
 	ck_assert_int_eq(bus_plan.decode(bytes, 0, size, back), size);
 	ck_assert_int_eq(bus_plan.encode(again, 0, size, back), size);
 	ck_assert_int_eq(memcmp(bytes, again, (size_t)size), 0);
-	ck_assert(plan_message_check(back, &config.table));
+	ck_assert(plan_check(back, &config.table));
 	same_shot(&back->entries[0].shots[0], &result.plan[0].shot[0]);
 	free(bytes);
 	free(again);
@@ -483,7 +487,7 @@ START_TEST(spoiled_plans_are_refused_or_harmless)
 				(uint8_t)random_u64(&random);
 		if (bus_plan.decode(bytes, 0, size, back) != size)
 			continue;
-		if (!plan_message_check(back, &config.table) || back->entry_count == 0)
+		if (!plan_check(back, &config.table) || back->entry_count == 0)
 			continue;
 		accepted++;
 		draw_proposal(list, &config.table, back, 0, 0, &options);
@@ -491,7 +495,7 @@ START_TEST(spoiled_plans_are_refused_or_harmless)
 		ck_assert(list->item_count <= DRAW_ITEM_MAX && list->point_count <= DRAW_POINT_MAX);
 		drawable += draw_check(list);
 		plan_message_animation(animation, back, 0, 0);
-		ck_assert(plan_message_animation_check(animation));
+		ck_assert(animation_check(animation));
 	}
 	ck_assert_int_gt(drawable, 100);
 	free(good);
@@ -509,13 +513,13 @@ START_TEST(an_animation_is_one_shot_of_the_plan)
 	static billiard_animation_t a;
 	const billiard_plan_shot_t *shot = &plan.entries[0].shots[0];
 	plan_message_animation(&a, &plan, 0, 0);
-	ck_assert(plan_message_animation_check(&a));
+	ck_assert(animation_check(&a));
 	ck_assert(a.plan_id == plan.request_id && a.run && a.rate == 1 && a.ball_count == plan.ball_count);
 	ck_assert_int_eq(a.keyframe_count, shot->keyframe_count);
 	ck_assert_int_eq(memcmp(a.keyframes, &plan.keyframes[shot->keyframe_first],
 				(size_t)a.keyframe_count * sizeof a.keyframes[0]),
 			 0);
-	ck_assert(plan_message_same_motion(&a, &a));
+	ck_assert(animation_same_motion(&a, &a));
 }
 END_TEST
 
@@ -527,16 +531,16 @@ START_TEST(an_animation_runs_pauses_and_begins_again)
 				  .ball_count = 1,
 				  .keyframe_count = 2,
 				  .keyframes = {{.end = 4}, {.end = 3}}};
-	ck_assert_double_eq(plan_message_animation_length(&a), 4);
+	ck_assert_double_eq(animation_length(&a), 4);
 	static const double at[][2] = {{0, 0}, {1, 2}, {2, 4}, {2.4, 4}, {2.5, 0}, {3, 1}, {5, 0}};
 	for (size_t i = 0; i < sizeof at / sizeof at[0]; i++)
-		ck_assert_double_eq_tol(plan_message_animation_time(&a, at[i][0]), at[i][1], 1e-12);
+		ck_assert_double_eq_tol(animation_position(&a, at[i][0]), at[i][1], 1e-12);
 	a.position = 3;
-	ck_assert_double_eq_tol(plan_message_animation_time(&a, 0.25), 3.5, 1e-12);
+	ck_assert_double_eq_tol(animation_position(&a, 0.25), 3.5, 1e-12);
 	a.run = 0;
-	ck_assert_double_eq(plan_message_animation_time(&a, 100), 3);
+	ck_assert_double_eq(animation_position(&a, 100), 3);
 	a = (billiard_animation_t){.run = 1, .rate = 1};
-	ck_assert_double_eq(plan_message_animation_time(&a, 100), 0);
+	ck_assert_double_eq(animation_position(&a, 100), 0);
 }
 END_TEST
 
@@ -545,7 +549,7 @@ START_TEST(malformed_animations_are_refused)
 	static billiard_animation_t good, bad;
 	plan_message_animation(&good, &plan, 0, 0);
 #define BAD_ANIMATION(field, value)                                                                                    \
-	(bad = good, bad.field = (value), ck_assert_msg(!plan_message_animation_check(&bad), #field " = " #value))
+	(bad = good, bad.field = (value), ck_assert_msg(!animation_check(&bad), #field " = " #value))
 	BAD_ANIMATION(keyframe_count, -1);
 	BAD_ANIMATION(keyframe_count, 769);
 	BAD_ANIMATION(ball_count, -1);

@@ -4,6 +4,9 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "app/planner/plan_check.h"
+#include "app/planner/request_message.h"
+#include "app/planner/plan_message.h"
 #include "app/process/process.h"
 #include "harness.h"
 #include "planner_client.h"
@@ -61,7 +64,7 @@ START_TEST(first_then_better_then_final)
 	const billiard_plan_t *first = &client.first_plan;
 	ck_assert(first->sequence == 0 && !first->is_final && first->entry_count == 1);
 	ck_assert_int_gt(first->entries[0].shots[0].keyframe_count, 0);
-	ck_assert(plan_message_check(first, &config.table));
+	ck_assert(plan_check(first, &config.table));
 	double cost = first->entries[0].cost;
 	int shots = first->entries[0].shot_count;
 	ck_assert(client_wait(&client, 10));
@@ -69,7 +72,7 @@ START_TEST(first_then_better_then_final)
 	ck_assert_int_eq(client.plan.entry_count, PLAN_MESSAGE_ENTRIES);
 	ck_assert_int_ge(client.plan.sequence, 1);
 	ck_assert(client.plan.entries[0].shot_count > shots || client.plan.entries[0].cost <= cost);
-	ck_assert(plan_message_check(&client.plan, &config.table));
+	ck_assert(plan_check(&client.plan, &config.table));
 }
 END_TEST
 

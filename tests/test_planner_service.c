@@ -1,3 +1,6 @@
+#include "app/process/clock.h"
+#include "app/process/ball_message.h"
+#include "app/planner/plan_check.h"
 #include "app/planner/planner_service.h"
 
 #include <math.h>
@@ -97,7 +100,7 @@ START_TEST(answers_name_their_request_and_end_with_a_final_one)
 		sequence = answer.sequence + 1;
 	} while (!answer.is_final);
 	ck_assert_int_eq(answer.status, PLAN_MESSAGE_OK);
-	ck_assert(plan_message_check(&answer, &config.table));
+	ck_assert(plan_check(&answer, &config.table));
 	ck_assert_str_eq((const char *)answer.names[2], "BALL2");
 	ck_assert(no_more());
 }
@@ -199,7 +202,7 @@ START_TEST(bad_requests_are_refused_with_the_reason)
 	final();
 	ck_assert(answer.status == PLAN_MESSAGE_REFUSED && answer.request_id == 1 && answer.entry_count == 0);
 	ck_assert_ptr_nonnull(strstr((const char *)answer.reason, "ball_count"));
-	ck_assert(plan_message_check(&answer, &config.table));
+	ck_assert(plan_check(&answer, &config.table));
 	make(2, true);
 	request.balls[1].x = NAN;
 	planner_service_request(service, &request);
@@ -222,11 +225,11 @@ START_TEST(older_requests_are_taken_after_a_while)
 	final();
 	ck_assert(!planner_service_request(service, make(10, true)));
 	final();
-	double begin = process_seconds(NULL);
+	double begin = clock_seconds();
 	while (!planner_service_request(service, make(10, true))) {
 		final();
 		ck_assert(answer.request_id == 10 && answer.status == PLAN_MESSAGE_CANCELLED);
-		ck_assert_double_lt(process_seconds(NULL) - begin, 10);
+		ck_assert_double_lt(clock_seconds() - begin, 10);
 	}
 	final();
 	ck_assert_int_eq(answer.request_id, 10);

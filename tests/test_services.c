@@ -7,6 +7,10 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "app/process/text.h"
+#include "app/process/clock.h"
+#include "app/process/ball_message.h"
+#include "app/planner/plan_check.h"
 #include "app/light/draw.h"
 #include "app/planner/plan_message.h"
 #include "app/process/process.h"
@@ -120,7 +124,7 @@ START_TEST(a_flood_keeps_nobody_from_timers_and_signals)
 	atomic_store(&flooding, true);
 	ck_assert_int_eq(pthread_create(&thread, NULL, flood, other), 0);
 	/* STATUS and DRAW go on meanwhile. */
-	threshold = process_utime() + 1500000;
+	threshold = clock_utime() + 1500000;
 	ck_assert(fixture_wait(bus, has_ignored_many, 20));
 	ck_assert_int_ge(heard.draws, 2);
 	kill(pid, SIGTERM);
@@ -153,7 +157,7 @@ static void ask(int64_t id, int balls)
 	bus_publish(bus, "PLAN_REQUEST", &bus_plan_request, &request);
 	threshold = id;
 	ck_assert(fixture_wait(bus, final_plan, 10));
-	ck_assert(plan_message_check(&heard.plan, &config.table));
+	ck_assert(plan_check(&heard.plan, &config.table));
 }
 
 START_TEST(the_planner_answers_or_refuses)
@@ -178,11 +182,11 @@ static double next_frame;
 static void play_vision(void)
 {
 	static int64_t frames;
-	if (process_seconds(NULL) < next_frame)
+	if (clock_seconds() < next_frame)
 		return;
-	next_frame = process_seconds(NULL) + 0.03;
+	next_frame = clock_seconds() + 0.03;
 	frames++;
-	billiard_table_state_t state = {.utime = process_utime(), .seq = frames, .calibration = 1, .ball_count = 3};
+	billiard_table_state_t state = {.utime = clock_utime(), .seq = frames, .calibration = 1, .ball_count = 3};
 	static const struct {
 		enum ball_colour colour;
 		vec2 at;
@@ -258,10 +262,10 @@ static bool picture_is_there(void)
 
 static void snapshot(const char *name)
 {
-	billiard_command_t command = {.utime = process_utime()};
+	billiard_command_t command = {.utime = clock_utime()};
 	snprintf(picture_path, sizeof picture_path, "%s", fixture_file(name));
-	bus_set_text(command.name, sizeof command.name, "snapshot");
-	bus_set_text(command.argument, sizeof command.argument, picture_path);
+	text_set(command.name, sizeof command.name, "snapshot");
+	text_set(command.argument, sizeof command.argument, picture_path);
 	bus_publish(bus, "COMMAND", &bus_command, &command);
 }
 
@@ -310,7 +314,7 @@ static bool saw_nothing(void)
 
 static void publish_camera(const void *jpeg, size_t size)
 {
-	billiard_image_t image = {process_utime(), 1, 1280, 720, (int32_t)size, (uint8_t *)jpeg};
+	billiard_image_t image = {clock_utime(), 1, 1280, 720, (int32_t)size, (uint8_t *)jpeg};
 	bus_publish(bus, "CAMERA", &bus_image, &image);
 }
 

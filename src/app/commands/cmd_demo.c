@@ -10,6 +10,9 @@
 #include <string.h>
 #include <sys/stat.h>
 
+#include "app/process/text.h"
+#include "app/process/clock.h"
+#include "app/planner/plan_check.h"
 #include "app/process/bus.h"
 #include "app/commands/cmd.h"
 #include "app/light/draw.h"
@@ -78,11 +81,11 @@ static void ball_name(const struct demo *d, int ball, char *out, size_t size)
 {
 	const billiard_plan_shot_t *s = &d->plan.entries[0].shots[0];
 	vec2 at = {s->start_x[ball], s->start_y[ball]};
-	bus_text(out, size, d->plan.names[ball], sizeof d->plan.names[0]);
+	text_get(out, size, d->plan.names[ball], sizeof d->plan.names[0]);
 	for (int i = 0; d->has_truth && i < d->truth.ball_count; i++) {
 		const billiard_ball_t *b = &d->truth.balls[i];
 		if (vec2_dist(at, (vec2){b->x, b->y}) < d->config.table.ball_radius)
-			bus_text(out, size, b->name, sizeof b->name);
+			text_get(out, size, b->name, sizeof b->name);
 	}
 }
 
@@ -161,13 +164,13 @@ static void keep_camera_picture(struct demo *d)
 
 static void ask_projector_picture(struct demo *d)
 {
-	billiard_command_t command = {.utime = process_utime()};
+	billiard_command_t command = {.utime = clock_utime()};
 	char path[TEXT_SIZE], *folder = realpath(d->options.out, NULL);
 	snprintf(path, sizeof path, "%.200s/shot-%d-projector.png", folder ? folder : ".", d->proposals);
 	free(folder);
-	bus_set_text(command.name, sizeof command.name, "snapshot");
-	bus_set_text(command.target, sizeof command.target, "billiard-projector");
-	bus_set_text(command.argument, sizeof command.argument, path);
+	text_set(command.name, sizeof command.name, "snapshot");
+	text_set(command.target, sizeof command.target, "billiard-projector");
+	text_set(command.argument, sizeof command.argument, path);
 	bus_publish(d->process.bus, "COMMAND", &bus_command, &command);
 }
 
@@ -208,7 +211,7 @@ static bool on_plan(void *context, const void *message)
 {
 	struct demo *d = context;
 	const billiard_plan_t *plan = message;
-	if (!plan_message_check(plan, &d->config.table))
+	if (!plan_check(plan, &d->config.table))
 		return false;
 	if (plan->status == PLAN_MESSAGE_OK)
 		d->plan = *plan;
@@ -223,7 +226,7 @@ static bool on_draw(void *context, const void *message)
 		return true;
 	d->shown_id = list->plan_id;
 	d->shown_utime = list->utime;
-	d->shown_at = d->last_progress = process_seconds(NULL);
+	d->shown_at = d->last_progress = clock_seconds();
 	d->proposals++;
 	return true;
 }
@@ -234,7 +237,7 @@ static double metric(const billiard_status_t *status, const char *name)
 	for (int i = 0; i < status->metric_count && i < (int)(sizeof status->metrics / sizeof status->metrics[0]);
 	     i++) {
 		char text[sizeof status->metrics[i].name];
-		bus_text(text, sizeof text, status->metrics[i].name, sizeof status->metrics[i].name);
+		text_get(text, sizeof text, status->metrics[i].name, sizeof status->metrics[i].name);
 		if (strcmp(text, name) == 0)
 			return status->metrics[i].value;
 	}
@@ -246,10 +249,10 @@ static bool on_status(void *context, const void *message)
 	struct demo *d = context;
 	const billiard_status_t *s = message;
 	char name[sizeof s->process], state[sizeof s->state];
-	bus_text(name, sizeof name, s->process, sizeof s->process);
-	bus_text(state, sizeof state, s->state, sizeof s->state);
+	text_get(name, sizeof name, s->process, sizeof s->process);
+	text_get(state, sizeof state, s->state, sizeof s->state);
 	if (strcmp(name, "billiard-vision") == 0 && strcmp(state, "end of source") == 0)
-		d->source_ended = d->source_ended > 0 ? d->source_ended : process_seconds(NULL);
+		d->source_ended = d->source_ended > 0 ? d->source_ended : clock_seconds();
 	if (strcmp(name, "billiard-vision") == 0 && strncmp(state, "photo ", 6) == 0)
 		snprintf(d->picture, sizeof d->picture, "%s", state + 6);
 	if (strcmp(name, "billiard-vision") == 0)
@@ -273,7 +276,7 @@ static void note_fallen(struct demo *d, const billiard_table_state_t *now)
 		char name[24];
 		if (find_ball(now, d->before.balls[i].track) >= 0)
 			continue;
-		bus_text(name, sizeof name, d->before.balls[i].name, sizeof d->before.balls[i].name);
+		text_get(name, sizeof name, d->before.balls[i].name, sizeof d->before.balls[i].name);
 		add_text(d->fell, sizeof d->fell, " %s", name);
 	}
 }
@@ -284,7 +287,7 @@ static void end_shot(struct demo *d)
 	d->played++;
 	printf("; fell:%s\n", d->fell[0] ? d->fell : " nothing");
 	fflush(stdout);
-	d->last_progress = process_seconds(NULL);
+	d->last_progress = clock_seconds();
 	if (d->played >= d->options.shots)
 		supervisor_stop(&d->supervisor, d->status);
 }
@@ -318,7 +321,7 @@ static int on_tick(sd_event_source *source, uint64_t usec, void *context)
 {
 	(void)source, (void)usec;
 	struct demo *d = context;
-	double now = process_seconds(NULL);
+	double now = clock_seconds();
 	if (d->shown_at > 0 && now - d->shown_at > PICTURE_DELAY) {
 		d->shown_at = 0;
 		keep_camera_picture(d);
@@ -388,7 +391,7 @@ static int run(struct demo *d)
 	int r = process_init(&d->process, "billiard-demo", &options, &d->config);
 	if (r < 0)
 		return 2;
-	d->last_progress = process_seconds(NULL);
+	d->last_progress = clock_seconds();
 	supervisor_init(&d->supervisor, d->process.event, d->options.config, NULL);
 	if ((r = subscribe_all(d)) < 0 || (r = process_every(&d->process, TICK_US, on_tick, d)) < 0 ||
 	    (r = start_services(d, err, sizeof err)) < 0) {

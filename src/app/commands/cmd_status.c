@@ -8,6 +8,8 @@
 #include <string.h>
 #include <systemd/sd-event.h>
 
+#include "app/process/text.h"
+#include "app/process/clock.h"
 #include "app/process/bus.h"
 #include "app/commands/cmd.h"
 #include "app/config/config.h"
@@ -50,7 +52,7 @@ static double up_seconds(const billiard_status_t *s)
 /* JSON has no bytes, and a cut text may end within a character. */
 static void text(char *out, size_t size, const uint8_t *bytes, size_t byte_count)
 {
-	bus_text(out, size, bytes, byte_count);
+	text_get(out, size, bytes, byte_count);
 	for (; *out; out++)
 		if ((unsigned char)*out > 126)
 			*out = '?';
@@ -276,8 +278,8 @@ static int read_control(int count, char **word, billiard_command_t *command)
 		if (!argument_fits(controls[i].argument, argument))
 			return cmd_bad_input("billiard control: %s: found \"%s\", wanted %s", word[0],
 					     argument ? argument : "nothing", wanted[controls[i].argument]);
-		bus_set_text(command->name, sizeof command->name, word[0]);
-		bus_set_text(command->argument, sizeof command->argument, argument ? argument : "");
+		text_set(command->name, sizeof command->name, word[0]);
+		text_set(command->argument, sizeof command->argument, argument ? argument : "");
 		return 0;
 	}
 	return cmd_bad_input("billiard control: no command has the name \"%s\"; see --help", word[0]);
@@ -297,7 +299,7 @@ int cmd_control(int argc, char **argv)
 			   argc, argv);
 	if (status)
 		return status == 1 ? 0 : 2;
-	billiard_command_t command = {.utime = process_utime()};
+	billiard_command_t command = {.utime = clock_utime()};
 	if ((status = read_control(argc - optind, argv + optind, &command)))
 		return status;
 	if ((status = open_bus(&o, "control", &config, &bus)))

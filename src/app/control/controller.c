@@ -4,6 +4,11 @@
 #include <stdio.h>
 #include <string.h>
 
+#include "app/process/text.h"
+#include "app/process/ball_message.h"
+#include "app/planner/plan_check.h"
+#include "app/light/animation.h"
+#include "app/planner/plan_message.h"
 #include "app/process/bus.h"
 
 static const double SETTLE_MAX = 0.006; /* m a ball may be moved to take camera errors out of a layout */
@@ -55,7 +60,7 @@ static void animate_shown(struct controller *c, double now)
 {
 	billiard_animation_t animation;
 	plan_message_animation(&animation, &c->plan, c->entry, c->shot);
-	if (!c->animate || plan_message_same_motion(&animation, &c->animation))
+	if (!c->animate || animation_same_motion(&animation, &c->animation))
 		return;
 	animation.rate = c->config->infinity.animation_rate;
 	animation.pause = c->config->infinity.animation_pause;
@@ -235,7 +240,7 @@ bool controller_state(struct controller *c, const billiard_table_state_t *state,
 	enum stability_verdict verdict = stability_frame(&c->stability, seen ? &layout : NULL, state->occluded != 0);
 	if (!seen) {
 		char reason[sizeof state->reason];
-		bus_text(reason, sizeof reason, state->reason, sizeof state->reason);
+		text_get(reason, sizeof reason, state->reason, sizeof state->reason);
 		snprintf(c->note, sizeof c->note, "not calibrated: %.70s", reason);
 	} else if (layout.cue < 0) {
 		note(c, "no cue ball");
@@ -254,13 +259,13 @@ bool controller_state(struct controller *c, const billiard_table_state_t *state,
 bool controller_plan(struct controller *c, const billiard_plan_t *plan, double now)
 {
 	bool wanted = c->fsm.state == FSM_PLANNING || c->fsm.state == FSM_SHOWING;
-	if (plan->request_id != c->request.id || !plan_message_check(plan, &c->config->table))
+	if (plan->request_id != c->request.id || !plan_check(plan, &c->config->table))
 		return false;
 	c->was_cancelled = plan->status == PLAN_MESSAGE_CANCELLED;
 	if (c->was_cancelled || !wanted)
 		return true;
 	if (plan->status != PLAN_MESSAGE_OK) {
-		bus_text(c->note, sizeof c->note, plan->reason, sizeof plan->reason);
+		text_get(c->note, sizeof c->note, plan->reason, sizeof plan->reason);
 		if (plan->is_final && !c->has_plan)
 			event(c, FSM_NONE, now);
 		return true;
@@ -289,14 +294,14 @@ static bool toggle(struct controller *c, bool *what)
 /* Lets the animation stand or run on from another place. */
 static void move_animation(struct controller *c, double position, bool run, double now)
 {
-	c->animation.position = fmin(fmax(position, 0), plan_message_animation_length(&c->animation));
+	c->animation.position = fmin(fmax(position, 0), animation_length(&c->animation));
 	c->animation.run = run;
 	c->animation_since = now;
 }
 
 static bool animation_control(struct controller *c, const char *name, const char *argument, double now)
 {
-	double at = plan_message_animation_time(&c->animation, now - c->animation_since);
+	double at = animation_position(&c->animation, now - c->animation_since);
 	bool shown = c->fsm.state == FSM_SHOWING && c->has_plan;
 	if (strcmp(name, "animation") == 0) {
 		c->animate = !c->animate;
@@ -322,9 +327,9 @@ static bool animation_control(struct controller *c, const char *name, const char
 bool controller_command(struct controller *c, const billiard_command_t *command, double now)
 {
 	char name[sizeof command->name], target[sizeof command->target], argument[sizeof command->argument];
-	bus_text(name, sizeof name, command->name, sizeof command->name);
-	bus_text(target, sizeof target, command->target, sizeof command->target);
-	bus_text(argument, sizeof argument, command->argument, sizeof command->argument);
+	text_get(name, sizeof name, command->name, sizeof command->name);
+	text_get(target, sizeof target, command->target, sizeof command->target);
+	text_get(argument, sizeof argument, command->argument, sizeof command->argument);
 	if (target[0] && strcmp(target, "billiard-infinity") != 0)
 		return true;
 	static const struct {

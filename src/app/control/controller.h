@@ -6,11 +6,13 @@
 #include "app/config/config.h"
 #include "app/light/draw.h"
 #include "app/control/fsm.h"
-#include "app/planner/plan_message.h"
 #include "app/control/stability.h"
 #include "lcmtypes/billiard_animation_t.h"
 #include "lcmtypes/billiard_command_t.h"
+#include "lcmtypes/billiard_plan_request_t.h"
+#include "lcmtypes/billiard_plan_t.h"
 #include "lcmtypes/billiard_table_state_t.h"
+#include "search/rules.h"
 
 /* What is to be sent after a call; the caller sends and clears the flags. */
 struct controller_output {

@@ -1,10 +1,22 @@
-/* The animation that is on the table, as its receivers keep it: messages come again each second and must not start it anew. */
+/* Animations: how a message moves the balls in time, and the one that is on the table as its receivers keep it (messages come again each
+ * second and must not start it anew). Pure. */
 #ifndef BILLIARD_APP_ANIMATION_H
 #define BILLIARD_APP_ANIMATION_H
 
 #include <stdbool.h>
 
 #include "lcmtypes/billiard_animation_t.h"
+
+enum { ANIMATION_KEYFRAMES = 768 };
+
+/* True when counts and indices are in range and all numbers finite: to be called on every animation from the wire. */
+bool animation_check(const billiard_animation_t *message);
+/* True when both move the same balls in the same way. */
+bool animation_same_motion(const billiard_animation_t *a, const billiard_animation_t *b);
+/* s from the strike until all balls rest. */
+double animation_length(const billiard_animation_t *message);
+/* s since the strike at which it stands, elapsed s after it was at its position: it runs to the end, pauses, begins again. */
+double animation_position(const billiard_animation_t *message, double elapsed);
 
 /* Begins as {0}: nothing is animated. */
 struct animation {

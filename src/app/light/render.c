@@ -8,6 +8,7 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "app/process/text.h"
 #include "app/process/bus.h"
 #include "app/light/draw.h"
 
@@ -118,7 +119,7 @@ static void draw_text_item(const struct render *render, const billiard_draw_item
 	vec2 px, x, y;
 	char text[sizeof(item->text)];
 	/* What is no UTF-8 would put an end to all drawing. */
-	bus_text(text, sizeof text, item->text, sizeof item->text);
+	text_get(text, sizeof text, item->text, sizeof item->text);
 	if (!to_px(render, at, &px) || !jacobian(render, at, &x, &y) || !(item->radius > 0))
 		return;
 	/* font space: one unit is one em, its y axis runs down */

@@ -10,6 +10,9 @@
 #include <time.h>
 #include <unistd.h>
 
+#include "app/process/text.h"
+#include "app/process/clock.h"
+#include "app/planner/request_message.h"
 #include "app/process/bus.h"
 #include "app/planner/plan_message.h"
 #include "app/process/process.h"
@@ -69,7 +72,7 @@ static double search_clock(void *context)
 	struct planner_service *service = context;
 	if (atomic_load_explicit(&service->unwanted, memory_order_relaxed))
 		planner_cancel(service->planner);
-	return process_seconds(NULL);
+	return clock_seconds();
 }
 
 /* Hands a plan to the loop. An improvement still waiting is replaced; a final answer never is. Locked by the caller. */
@@ -77,7 +80,7 @@ static void post(struct planner_service *service, const billiard_plan_t *plan)
 {
 	if (plan->request_id == service->present_id) {
 		service->last = *plan;
-		service->last_time = process_seconds(NULL);
+		service->last_time = clock_seconds();
 	}
 	int at = service->answer_count;
 	if (at > 0 && !service->answer[at - 1].is_final && service->answer[at - 1].request_id == plan->request_id)
@@ -98,8 +101,8 @@ static void send_plan(struct search *search, bool final)
 {
 	struct planner_service *service = search->service;
 	billiard_plan_t *plan = &service->draft;
-	double now = process_seconds(NULL);
-	plan->utime = process_utime();
+	double now = clock_seconds();
+	plan->utime = clock_utime();
 	plan->sequence = search->sequence++;
 	plan->is_final = final;
 	plan->seconds = now - search->started;
@@ -120,7 +123,7 @@ static void spend(struct plan_request *request, double request_time)
 {
 	if (request->budget.seconds <= 0)
 		return;
-	double left = request_time + request->budget.seconds - ANSWER_TIME - process_seconds(NULL);
+	double left = request_time + request->budget.seconds - ANSWER_TIME - clock_seconds();
 	request->budget.seconds = left > LEAST_TIME ? left : LEAST_TIME;
 }
 
@@ -128,7 +131,7 @@ static void on_progress(void *context, const struct plan_result *result)
 {
 	struct search *search = context;
 	struct planner_service *service = search->service;
-	if (search->sequence > 0 && process_seconds(NULL) - search->last_sent < IMPROVEMENT_PERIOD)
+	if (search->sequence > 0 && clock_seconds() - search->last_sent < IMPROVEMENT_PERIOD)
 		return;
 	plan_message_fill(&service->draft, result, &service->config->table, &service->config->model, service->scratch);
 	send_plan(search, false);
@@ -137,7 +140,7 @@ static void on_progress(void *context, const struct plan_result *result)
 static void run_search(struct planner_service *service, const billiard_plan_request_t *message, double request_time)
 {
 	char err[sizeof service->draft.reason] = "";
-	struct search search = {service, message->id, 0, request_time, process_seconds(NULL), 0};
+	struct search search = {service, message->id, 0, request_time, clock_seconds(), 0};
 	struct plan_request request;
 	struct plan_result result = {0};
 	plan_message_begin(&service->draft, message);
@@ -162,7 +165,7 @@ static void run_search(struct planner_service *service, const billiard_plan_requ
 			snprintf(err, sizeof err, "no shot found");
 		}
 	}
-	bus_set_text(service->draft.reason, sizeof service->draft.reason, err);
+	text_set(service->draft.reason, sizeof service->draft.reason, err);
 	send_plan(&search, true);
 }
 
@@ -182,10 +185,10 @@ static void *search_thread(void *context)
 		service->busy = true;
 		atomic_store_explicit(&service->unwanted, false, memory_order_relaxed);
 		pthread_mutex_unlock(&service->lock);
-		double began = process_seconds(NULL), cpu = thread_seconds();
+		double began = clock_seconds(), cpu = thread_seconds();
 		run_search(service, &request, request_time);
 		pthread_mutex_lock(&service->lock);
-		service->figures.searched += process_seconds(NULL) - began;
+		service->figures.searched += clock_seconds() - began;
 		service->figures.manager += thread_seconds() - cpu;
 		service->busy = false;
 	}
@@ -282,10 +285,10 @@ static void answer_without_search(struct planner_service *service, const billiar
 {
 	billiard_plan_t plan;
 	plan_message_begin(&plan, request);
-	plan.utime = process_utime();
+	plan.utime = clock_utime();
 	plan.is_final = 1;
 	plan.status = (int8_t)status;
-	bus_set_text(plan.reason, sizeof plan.reason, reason);
+	text_set(plan.reason, sizeof plan.reason, reason);
 	post(service, &plan);
 }
 
@@ -320,7 +323,7 @@ static void take(struct planner_service *service, const billiard_plan_request_t 
 	service->present_id = request->id;
 	service->last.request_id = 0;
 	service->request = *request;
-	service->request_time = process_seconds(NULL);
+	service->request_time = clock_seconds();
 	service->has_request = true;
 	pthread_cond_signal(&service->wake);
 }
@@ -330,7 +333,7 @@ bool planner_service_request(struct planner_service *service, const billiard_pla
 	bool accepted = true;
 	pthread_mutex_lock(&service->lock);
 	bool idle = !service->busy && !service->has_request;
-	bool recent = process_seconds(NULL) - service->last_time < OUTDATED;
+	bool recent = clock_seconds() - service->last_time < OUTDATED;
 	if (refuse(service, request)) {
 		/* answered */
 	} else if (request->id > service->present_id) {

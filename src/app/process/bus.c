@@ -2,7 +2,6 @@
 
 #include <arpa/inet.h>
 #include <errno.h>
-#include <glib.h>
 #include <lcm/lcm.h>
 #include <pthread.h>
 #include <stdio.h>
@@ -10,6 +9,7 @@
 #include <string.h>
 #include <sys/socket.h>
 #include <unistd.h>
+#include "app/process/text.h"
 
 enum { DRAIN_MAX = 1000 }; /* messages handled at a time */
 
@@ -318,25 +318,6 @@ const char *bus_last_ignored(const struct bus *bus)
 bool bus_is_for(const billiard_command_t *command, const char *program)
 {
 	char target[sizeof command->target];
-	bus_text(target, sizeof target, command->target, sizeof command->target);
+	text_get(target, sizeof target, command->target, sizeof command->target);
 	return !target[0] || strcmp(target, program) == 0;
-}
-
-void bus_text(char *out, size_t size, const uint8_t *bytes, size_t byte_count)
-{
-	size_t n = 0;
-	for (; n + 1 < size && n < byte_count && bytes[n]; n++)
-		out[n] = bytes[n] < ' ' || bytes[n] == 127 ? '?' : (char)bytes[n];
-	out[n] = '\0';
-	/* Texts are cut by the byte on their way here. */
-	const char *bad;
-	while (!g_utf8_validate(out, -1, &bad))
-		out[bad - out] = '?';
-}
-
-void bus_set_text(uint8_t *bytes, size_t byte_count, const char *text)
-{
-	size_t n = strnlen(text, byte_count - 1);
-	memcpy(bytes, text, n);
-	memset(bytes + n, 0, byte_count - n);
 }

@@ -74,10 +74,4 @@ const char *bus_last_ignored(const struct bus *bus);
 /* True when a command names no target, or this program. */
 bool bus_is_for(const billiard_command_t *command, const char *program);
 
-/* Text of a byte[] member as a C string of at most size - 1 bytes, always terminated. Control characters and what
- * is no UTF-8 become '?'. */
-void bus_text(char *out, size_t size, const uint8_t *bytes, size_t byte_count);
-/* The other way: cut to fit, padded with NUL. */
-void bus_set_text(uint8_t *bytes, size_t byte_count, const char *text);
-
 #endif

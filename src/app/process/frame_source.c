@@ -9,6 +9,7 @@
 #include <time.h>
 #include <unistd.h>
 
+#include "app/process/clock.h"
 #include "app/process/process.h"
 #include "vision/capture_cv.h"
 
@@ -64,7 +65,7 @@ static bool offer(struct frame_source *s, struct frame_source_frame *frame, bool
 		pthread_cond_wait(&s->changed, &s->lock);
 	s->figures.dropped += s->full;
 	struct frame_source_frame old = s->slot;
-	frame->utime = process_utime();
+	frame->utime = clock_utime();
 	frame->seq = ++s->figures.frames;
 	s->slot = *frame;
 	*frame = old;

@@ -8,27 +8,13 @@
 #include <stdio.h>
 #include <string.h>
 #include <systemd/sd-daemon.h>
-#include <time.h>
 #include <unistd.h>
 
+#include "app/process/text.h"
+#include "app/process/clock.h"
 #include "app/process/version.h"
 
 enum { STATUS_PERIOD_US = 1000000 };
-
-int64_t process_utime(void)
-{
-	struct timespec t;
-	clock_gettime(CLOCK_REALTIME, &t);
-	return (int64_t)t.tv_sec * 1000000 + t.tv_nsec / 1000;
-}
-
-double process_seconds(void *unused)
-{
-	(void)unused;
-	struct timespec t;
-	clock_gettime(CLOCK_MONOTONIC, &t);
-	return (double)t.tv_sec + 1e-9 * (double)t.tv_nsec;
-}
 
 /* ---- command line --------------------------------------------------------------------------------------------------- */
 
@@ -126,7 +112,7 @@ static void publish_status(struct process *process)
 		process->ignored_logged = bus_ignored(process->bus);
 		process_error(process, "ignored %s", bus_last_ignored(process->bus));
 	}
-	process->status.utime = process_utime();
+	process->status.utime = clock_utime();
 	process->status.received = bus_received(process->bus);
 	process->status.ignored = bus_ignored(process->bus);
 	bus_publish(process->bus, "STATUS", &bus_status, &process->status);
@@ -141,7 +127,7 @@ void process_state(struct process *process, const char *format, ...)
 	vsnprintf(text, sizeof text, format, args);
 	va_end(args);
 	memcpy(before, process->status.state, sizeof before);
-	bus_set_text(process->status.state, sizeof process->status.state, text);
+	text_set(process->status.state, sizeof process->status.state, text);
 	if (memcmp(before, process->status.state, sizeof before) != 0) {
 		void (*describe)(void *, struct process *) = process->describe;
 		process->describe = NULL; /* it may call process_state() itself */
@@ -159,8 +145,8 @@ void process_error(struct process *process, const char *format, ...)
 	vsnprintf(text, sizeof text, format, args);
 	va_end(args);
 	memcpy(before, process->status.error, sizeof before);
-	bus_set_text(process->status.error, sizeof process->status.error, text);
-	process->status.error_utime = process_utime();
+	text_set(process->status.error, sizeof process->status.error, text);
+	process->status.error_utime = clock_utime();
 	if (memcmp(before, process->status.error, sizeof before) != 0)
 		fprintf(stderr, "%s: %s\n", process->name, text);
 }
@@ -174,8 +160,8 @@ void process_metric(struct process *process, const char *name, const char *unit,
 	if (i == (int)(sizeof s->metrics / sizeof s->metrics[0]))
 		return;
 	if (i == s->metric_count) {
-		bus_set_text(s->metrics[i].name, sizeof s->metrics[i].name, name);
-		bus_set_text(s->metrics[i].unit, sizeof s->metrics[i].unit, unit);
+		text_set(s->metrics[i].name, sizeof s->metrics[i].name, name);
+		text_set(s->metrics[i].unit, sizeof s->metrics[i].unit, unit);
 		s->metric_count++;
 	}
 	s->metrics[i].value = value;
@@ -276,10 +262,10 @@ int process_init(struct process *process, const char *name, const struct process
 		fprintf(stderr, "%s: %s\n", name, err);
 		return r;
 	}
-	bus_set_text(process->status.process, sizeof process->status.process, name);
-	bus_set_text(process->status.state, sizeof process->status.state, "starting");
+	text_set(process->status.process, sizeof process->status.process, name);
+	text_set(process->status.state, sizeof process->status.state, "starting");
 	process->status.pid = (int32_t)getpid();
-	process->status.started_utime = process_utime();
+	process->status.started_utime = clock_utime();
 	if ((r = sd_event_add_io(process->event, NULL, bus_descriptor(process->bus), EPOLLIN, on_bus, process)) < 0 ||
 	    (r = process_every(process, STATUS_PERIOD_US, on_status_timer, process)) < 0) {
 		fprintf(stderr, "%s: event loop: %s\n", name, strerror(-r));

@@ -49,9 +49,4 @@ void process_error(struct process *process, const char *format, ...) __attribute
 /* Sets a metric of that name, adding it when it is new. */
 void process_metric(struct process *process, const char *name, const char *unit, double value);
 
-/* us since 1970. */
-int64_t process_utime(void);
-/* s, monotonic. */
-double process_seconds(void *unused);
-
 #endif

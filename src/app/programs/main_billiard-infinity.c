@@ -2,6 +2,8 @@
 #include <stdio.h>
 #include <string.h>
 
+#include "app/process/text.h"
+#include "app/process/clock.h"
 #include "app/control/controller.h"
 #include "app/process/process.h"
 
@@ -16,12 +18,12 @@ struct infinity {
 
 static double now(void)
 {
-	return process_seconds(NULL);
+	return clock_seconds();
 }
 
 static void send_draw(struct infinity *p)
 {
-	p->controller.draw.utime = process_utime();
+	p->controller.draw.utime = clock_utime();
 	p->controller.draw.seq = ++p->draw_seq;
 	bus_publish(p->process.bus, "DRAW", &bus_draw_list, &p->controller.draw);
 }
@@ -34,11 +36,11 @@ static void send_animation(struct infinity *p)
 static void send_cancel(struct infinity *p, int64_t id)
 {
 	char text[32];
-	billiard_command_t command = {.utime = process_utime()};
+	billiard_command_t command = {.utime = clock_utime()};
 	snprintf(text, sizeof text, "%lld", (long long)id);
-	bus_set_text(command.name, sizeof command.name, "cancel");
-	bus_set_text(command.target, sizeof command.target, "billiard-planner");
-	bus_set_text(command.argument, sizeof command.argument, text);
+	text_set(command.name, sizeof command.name, "cancel");
+	text_set(command.target, sizeof command.target, "billiard-planner");
+	text_set(command.argument, sizeof command.argument, text);
 	bus_publish(p->process.bus, "COMMAND", &bus_command, &command);
 }
 
@@ -50,13 +52,13 @@ static void flush(struct infinity *p)
 	if (out.cancel)
 		send_cancel(p, out.cancel_id);
 	if (out.request) {
-		p->controller.request.utime = process_utime();
+		p->controller.request.utime = clock_utime();
 		bus_publish(p->process.bus, "PLAN_REQUEST", &bus_plan_request, &p->controller.request);
 	}
 	if (out.draw)
 		send_draw(p);
 	if (out.animation) {
-		p->controller.animation.utime = process_utime();
+		p->controller.animation.utime = clock_utime();
 		send_animation(p);
 	}
 	process_state(&p->process, "%s", fsm_state_name(p->controller.fsm.state));

@@ -3,6 +3,8 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "app/process/text.h"
+#include "app/process/clock.h"
 #include "app/planner/plan_message.h"
 #include "app/planner/planner_service.h"
 #include "app/process/process.h"
@@ -27,8 +29,8 @@ static bool on_command(void *context, const void *message)
 	struct planner_process *p = context;
 	const billiard_command_t *command = message;
 	char name[sizeof command->name], argument[sizeof command->argument];
-	bus_text(name, sizeof name, command->name, sizeof command->name);
-	bus_text(argument, sizeof argument, command->argument, sizeof command->argument);
+	text_get(name, sizeof name, command->name, sizeof command->name);
+	text_get(argument, sizeof argument, command->argument, sizeof command->argument);
 	if (strcmp(name, "cancel") == 0 && bus_is_for(command, p->process.name))
 		planner_service_cancel(p->service, strtoll(argument, NULL, 10));
 	return true;
@@ -61,8 +63,8 @@ static int on_turn(sd_event_source *source, void *context)
 	if (strncmp(why, CHANNEL, sizeof CHANNEL - 1) != 0 || !strstr(why, "malformed"))
 		return 0;
 	p->malformed++;
-	p->answer = (billiard_plan_t){.utime = process_utime(), .is_final = 1, .status = PLAN_MESSAGE_REFUSED};
-	bus_set_text(p->answer.reason, sizeof p->answer.reason, why + sizeof CHANNEL - 1);
+	p->answer = (billiard_plan_t){.utime = clock_utime(), .is_final = 1, .status = PLAN_MESSAGE_REFUSED};
+	text_set(p->answer.reason, sizeof p->answer.reason, why + sizeof CHANNEL - 1);
 	bus_publish(p->process.bus, "PLAN", &bus_plan, &p->answer);
 	return 0;
 }
@@ -70,7 +72,7 @@ static int on_turn(sd_event_source *source, void *context)
 /* Expansions and simulations a second since the last STATUS. */
 static double rate(struct planner_process *p, const struct planner_service_figures *f)
 {
-	double now = process_seconds(NULL), work = (double)(f->nodes + f->sims);
+	double now = clock_seconds(), work = (double)(f->nodes + f->sims);
 	double rate = now > p->work_time ? (work - p->work) / (now - p->work_time) : 0;
 	p->work = work;
 	p->work_time = now;

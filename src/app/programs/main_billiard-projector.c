@@ -2,9 +2,10 @@
 #include <stdio.h>
 #include <string.h>
 
+#include "app/process/text.h"
+#include "app/process/clock.h"
 #include "app/light/animation.h"
 #include "app/light/draw.h"
-#include "app/planner/plan_message.h"
 #include "app/process/process.h"
 #include "app/light/render.h"
 #include "app/light/window.h"
@@ -39,7 +40,7 @@ static bool on_draw(void *context, const void *message)
 static bool on_animation(void *context, const void *message)
 {
 	struct projector *p = context;
-	bool changed, ok = animation_take(&p->animation, message, process_seconds(NULL), &changed);
+	bool changed, ok = animation_take(&p->animation, message, clock_seconds(), &changed);
 	p->dirty = p->dirty || changed;
 	return ok;
 }
@@ -59,8 +60,8 @@ static bool on_command(void *context, const void *message)
 	struct projector *p = context;
 	const billiard_command_t *command = message;
 	char name[sizeof command->name], argument[sizeof command->argument];
-	bus_text(name, sizeof name, command->name, sizeof command->name);
-	bus_text(argument, sizeof argument, command->argument, sizeof command->argument);
+	text_get(name, sizeof name, command->name, sizeof command->name);
+	text_get(argument, sizeof argument, command->argument, sizeof command->argument);
 	if (strcmp(name, "snapshot") == 0 && argument[0] && bus_is_for(command, p->process.name))
 		snapshot(p, argument);
 	return true;
@@ -70,9 +71,9 @@ static bool on_command(void *context, const void *message)
 
 static void send_command(struct projector *p, const char *name, const char *argument)
 {
-	billiard_command_t command = {.utime = process_utime()};
-	bus_set_text(command.name, sizeof command.name, name);
-	bus_set_text(command.argument, sizeof command.argument, argument);
+	billiard_command_t command = {.utime = clock_utime()};
+	text_set(command.name, sizeof command.name, name);
+	text_set(command.argument, sizeof command.argument, argument);
 	bus_publish(p->process.bus, "COMMAND", &bus_command, &command);
 }
 
@@ -88,13 +89,13 @@ static int on_frame(sd_event_source *source, uint64_t usec, void *context)
 		return sd_event_exit(p->process.event, 0);
 	if (!p->window || !(p->dirty || animation_runs(&p->animation)))
 		return 0;
-	double begin = process_seconds(NULL);
+	double begin = clock_seconds();
 	render_draw(p->render, &p->list, animation_is_shown(&p->animation) ? &p->animation.message : NULL,
 		    animation_time(&p->animation, begin));
 	int width, height, stride;
 	const uint32_t *pixels = render_pixels(p->render, &width, &height, &stride);
 	window_show(p->window, pixels, stride);
-	p->work = process_seconds(NULL) - begin;
+	p->work = clock_seconds() - begin;
 	p->pictures++;
 	p->dirty = false;
 	return 0;

@@ -4,6 +4,9 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "app/process/clock.h"
+#include "app/process/ball_message.h"
+#include "app/planner/plan_check.h"
 #include "app/light/animation.h"
 #include "app/light/draw.h"
 #include "app/planner/plan_message.h"
@@ -128,8 +131,8 @@ static int on_frame(sd_event_source *source, uint64_t usec, void *context)
 {
 	(void)source, (void)usec;
 	struct virtual_process *p = context;
-	double now = process_seconds(NULL);
-	int64_t utime = process_utime();
+	double now = clock_seconds();
+	int64_t utime = clock_utime();
 	p->frames++;
 	play_wanted(p, now);
 	if (p->table->running)
@@ -138,7 +141,7 @@ static int on_frame(sd_event_source *source, uint64_t usec, void *context)
 		publish_truth(p, utime, now, false);
 	light(p, now);
 	publish_frame(p, utime, now);
-	p->work = process_seconds(NULL) - now;
+	p->work = clock_seconds() - now;
 	return 0;
 }
 
@@ -161,7 +164,7 @@ static bool on_draw(void *context, const void *message)
 		return false;
 	if (list->plan_id != p->list.plan_id) {
 		p->wanted_id = list->plan_id;
-		p->wanted_at = process_seconds(NULL);
+		p->wanted_at = clock_seconds();
 	}
 	if (same_picture(&p->list, list))
 		return true;
@@ -173,7 +176,7 @@ static bool on_draw(void *context, const void *message)
 static bool on_animation(void *context, const void *message)
 {
 	struct virtual_process *p = context;
-	bool changed, ok = animation_take(&p->animation, message, process_seconds(NULL), &changed);
+	bool changed, ok = animation_take(&p->animation, message, clock_seconds(), &changed);
 	p->lit = p->lit && !changed;
 	return ok;
 }
@@ -182,7 +185,7 @@ static bool on_plan(void *context, const void *message)
 {
 	struct virtual_process *p = context;
 	const billiard_plan_t *plan = message;
-	if (!plan_message_check(plan, &p->config.table))
+	if (!plan_check(plan, &p->config.table))
 		return false;
 	if (plan->status == PLAN_MESSAGE_OK)
 		p->plan = *plan;

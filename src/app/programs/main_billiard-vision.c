@@ -3,9 +3,11 @@
 #include <stdio.h>
 #include <string.h>
 
+#include "app/process/text.h"
+#include "app/process/clock.h"
+#include "app/process/ball_message.h"
 #include "app/config/colour_file.h"
 #include "app/process/frame_source.h"
-#include "app/planner/plan_message.h"
 #include "app/process/process.h"
 #include "vision/vision.h"
 
@@ -64,13 +66,13 @@ static void publish_state(struct vision_process *p, int64_t utime, int64_t seq)
 	*s = (billiard_table_state_t){
 		.utime = utime,
 		.seq = seq,
-		.latency_us = process_utime() - utime,
+		.latency_us = clock_utime() - utime,
 		.calibration = (int8_t)p->result.calibration,
 		.occluded = p->result.occluded,
 		.markers = p->result.markers_seen,
 		.residual_px = p->result.residual_px,
 	};
-	bus_set_text(s->reason, sizeof s->reason, p->result.reason);
+	text_set(s->reason, sizeof s->reason, p->result.reason);
 	fill_balls(s, &p->result);
 	bus_publish(p->process.bus, "TABLE_STATE", &bus_table_state, s);
 	p->latency = 1e-6 * (double)s->latency_us;
@@ -79,9 +81,9 @@ static void publish_state(struct vision_process *p, int64_t utime, int64_t seq)
 static void see(struct vision_process *p, const struct image *frame, int64_t utime, int64_t seq)
 {
 	char err[PROCESS_ERROR_SIZE];
-	double begin = process_seconds(NULL);
+	double begin = clock_seconds();
 	int r = vision_track(p->vision, frame, 1e-6 * (double)utime, &p->result, err, sizeof err);
-	p->work = process_seconds(NULL) - begin;
+	p->work = clock_seconds() - begin;
 	if (r < 0) {
 		p->bad++;
 		p->result = (struct vision_result){.calibration = CALIBRATION_NONE};
@@ -92,7 +94,7 @@ static void see(struct vision_process *p, const struct image *frame, int64_t uti
 	if (p->last_frame && utime > p->last_frame)
 		p->rate += 0.1 * (1e6 / (double)(utime - p->last_frame) - p->rate);
 	p->last_frame = utime;
-	p->last_arrival = process_seconds(NULL);
+	p->last_arrival = clock_seconds();
 	p->frames++;
 	if (p->result.calibration == CALIBRATION_NONE)
 		process_state(&p->process, "not calibrated");
@@ -158,7 +160,7 @@ static void show_dark(struct vision_process *p)
 	p->result = (struct vision_result){.calibration = CALIBRATION_NONE, .reason = "next photograph"};
 	publish_state(p, p->frame.utime, p->frame.seq);
 	p->last_frame = p->frame.utime;
-	p->last_arrival = process_seconds(NULL);
+	p->last_arrival = clock_seconds();
 	const char *slash = strrchr(p->picture, '/');
 	process_state(&p->process, "photo %s", slash ? slash + 1 : p->picture);
 }
@@ -189,7 +191,7 @@ static int on_silence(sd_event_source *event, uint64_t usec, void *context)
 	(void)event, (void)usec;
 	struct vision_process *p = context;
 	struct frame_source_figures f = {0};
-	double silent = process_seconds(NULL) - p->last_arrival;
+	double silent = clock_seconds() - p->last_arrival;
 	if (silent < SILENCE)
 		return 0;
 	if (p->source)
@@ -202,7 +204,7 @@ static int on_silence(sd_event_source *event, uint64_t usec, void *context)
 		 f.error[0] ? f.error : "the source is silent");
 	process_state(&p->process, "no frames");
 	/* In the source's clock: a replayed recording has its own. */
-	int64_t utime = p->last_frame ? p->last_frame + (int64_t)(1e6 * silent) : process_utime();
+	int64_t utime = p->last_frame ? p->last_frame + (int64_t)(1e6 * silent) : clock_utime();
 	utime -= LATENCY_US; /* a frame under way must not count as older */
 	publish_state(p, utime, 0);
 	return 0;
