@@ -37,7 +37,7 @@ APP := $(addprefix process/,$(APP_PROCESS)) $(addprefix config/,$(APP_CONFIG)) $
 # programs: src/app/programs/main_NAME.c becomes build/NAME
 PROGRAMS := billiard billiard-vision billiard-planner billiard-infinity billiard-projector billiard-table
 # tests/test_NAME.c each; tests/NAME.c shared by them
-TESTS := fsm stability plan_message controller planner_service planner_bus bus process supervisor frame_source services loop replay \
+TESTS := signature fsm stability plan_message controller planner_service planner_bus bus process supervisor frame_source services loop replay \
 	config position cmd plot draw render player table_camera contact_real contact_recorded shot_file \
 	rules cost geometry frontier pool scheme candidate plan plan_thesis plan_hard plan_complete tolerance refine solutions request \
 	ball contact detect event inverse model motion queue roots sim sim_hard table trace \
@@ -93,7 +93,7 @@ BENCH_SHARED_O := $(call obj,bench,$(BENCH_SHARED)) $(call obj,tests,brute_force
 EVAL_BINS := $(patsubst %,$(BUILD)/bench/eval_%,$(EVALS))
 BENCH_BINS := $(patsubst %,$(BUILD)/bench/bench_%,$(BENCHES))
 
-.PHONY: FORCE all demo check check-built bench eval fuzz fuzzers headers lint install clean setup tests programs
+.PHONY: FORCE all demo check check-built bench eval fuzz fuzzers headers lint signatures install clean setup tests programs
 .SECONDARY:
 .DELETE_ON_ERROR:
 
@@ -186,6 +186,13 @@ check-built: headers
 bench: setup
 	+@$(MAKE) --no-print-directory -j$(JOBS) programs $(BENCH_BINS)
 	@DATA=$(DATA) scripts/run-bench $(BUILD) $(BENCHES)
+
+# Writes tests/signatures.txt anew: a commit that changes it says which entries and why.
+signatures: $(BUILD)/tests/test_signature
+	@rm -f $(BUILD)/signatures.txt
+	@BILLIARD_SIGNATURES=$(BUILD)/signatures.txt $<
+	@cp $(BUILD)/signatures.txt tests/signatures.txt
+	@git diff --stat -- tests/signatures.txt 2>/dev/null || true
 
 # clang's libFuzzer (packages clang and libclang-rt-14-dev), everything in a folder of its own.
 fuzz:
