@@ -79,6 +79,27 @@ START_TEST(a_way_too_long_leaves_nothing)
 }
 END_TEST
 
+/* The cosine of two equal directions is often 1 + 2^-52: a straight hit, not a fault. */
+START_TEST(straight_on_is_the_border)
+{
+	struct table table = scene_thesis_table();
+	struct random r = random_begin("straight_on_is_the_border");
+	int beyond = 0;
+	for (int i = 0; i < 1000; i++) {
+		vec2 d = {random_in(&r, -1, 1), random_in(&r, -1, 1)};
+		double cosine = vec2_dot(vec2_unit(d), d) / sqrt(vec2_norm2(d));
+		beyond += cosine > 1;
+		if (cosine >= 1) {
+			ck_assert(hit_backward(&table, 2, cosine) == hit_backward(&table, 2, 1));
+			ck_assert(hit_forward(&table, 2, cosine) == hit_forward(&table, 2, 1));
+		}
+	}
+	ck_assert_int_gt(beyond, 10);
+	ck_assert(isinf(hit_backward(&table, 2, 0)));
+	ck_assert_double_eq(hit_forward(&table, 2, 0), 0);
+}
+END_TEST
+
 Suite *test_suite(void)
 {
 	Suite *suite = suite_create("inverse");
@@ -87,6 +108,7 @@ Suite *test_suite(void)
 	tcase_add_test(tcase, branches_meet);
 	tcase_add_test(tcase, forward_is_the_motion);
 	tcase_add_test(tcase, a_way_too_long_leaves_nothing);
+	tcase_add_test(tcase, straight_on_is_the_border);
 	suite_add_tcase(suite, tcase);
 	return suite;
 }

@@ -8,6 +8,7 @@
 #include <pthread.h>
 #include <semaphore.h>
 #include <string.h>
+#include <time.h>
 
 enum { TRACE_MAX = 4096 };
 
@@ -207,6 +208,7 @@ END_TEST
 /* Cancels once the search has told its first proposal. */
 struct canceller {
 	struct planner *planner;
+	uint64_t run;
 	sem_t told;
 };
 
@@ -215,7 +217,7 @@ static void *cancel_then(void *context)
 	struct canceller *canceller = context;
 	while (sem_wait(&canceller->told) != 0)
 		continue;
-	planner_cancel(canceller->planner);
+	planner_cancel(canceller->planner, canceller->run);
 	return NULL;
 }
 
@@ -224,6 +226,14 @@ static void tell(void *context, const struct plan_result *result)
 	struct canceller *canceller = context;
 	(void)result;
 	sem_post(&canceller->told);
+}
+
+static double steady_clock(void *context)
+{
+	struct timespec now;
+	(void)context;
+	clock_gettime(CLOCK_MONOTONIC, &now);
+	return (double)now.tv_sec + 1e-9 * (double)now.tv_nsec;
 }
 
 START_TEST(cancelled_from_another_thread)
@@ -240,7 +250,8 @@ START_TEST(cancelled_from_another_thread)
 	struct plan_result result;
 	char err[100];
 	pthread_t thread;
-	struct canceller canceller = {.planner = planner};
+	struct canceller canceller = {.planner = planner, .run = 7};
+	request.run = 7;
 	sem_init(&canceller.told, 0, 0);
 	ck_assert_int_eq(pthread_create(&thread, NULL, cancel_then, &canceller), 0);
 	ck_assert_int_eq(planner_run(planner, &request, tell, &canceller, &result, err, sizeof err), -ECANCELED);
@@ -252,10 +263,44 @@ START_TEST(cancelled_from_another_thread)
 	model_from_name("real", &model);
 	for (int i = 0; i < result.plan_count && i < 20; i++)
 		check_plan(&table, &model, &result.plan[i], BALL_MAX);
+	request.run++;
 	request.depth = 1;
 	request.rails = 0;
 	result = scene_run(planner, &request);
 	ck_assert_int_eq(result.status, PLAN_OK);
+	planner_destroy(planner);
+}
+END_TEST
+
+/* A cancel given between request and run is not lost; it counts for its run and those before, never for a later one, nor
+ * for one without a number. */
+START_TEST(cancelled_before_it_runs)
+{
+	struct table table = scene_thesis_table();
+	struct ball ball[BALL_MAX];
+	scene_after_break(&table, 3, ball);
+	struct plan_request request = scene_request(ball, BALL_MAX);
+	struct planner_def def = planner_def_default();
+	struct planner *planner;
+	struct plan_result result;
+	char err[100];
+	def.table = &table;
+	def.workers = 2;
+	def.scheme = (enum plan_scheme)_i;
+	def.now = steady_clock;
+	ck_assert_int_eq(planner_create(&planner, &def), 0);
+	planner_cancel(planner, 5);
+	planner_cancel(planner, 3); /* takes nothing back */
+	for (request.run = 0; request.run < 8; request.run++) {
+		bool cancelled = request.run >= 1 && request.run <= 5;
+		int rc = planner_run(planner, &request, NULL, NULL, &result, err, sizeof err);
+		ck_assert_int_eq(rc, cancelled ? -ECANCELED : 0);
+		ck_assert_int_eq(result.status, cancelled ? PLAN_CANCELLED : PLAN_OK);
+		ck_assert_int_eq(result.exhausted, !cancelled);
+	}
+	planner_cancel(planner, UINT64_MAX);
+	request.run = UINT64_MAX - 1;
+	ck_assert_int_eq(planner_run(planner, &request, NULL, NULL, &result, err, sizeof err), -ECANCELED);
 	planner_destroy(planner);
 }
 END_TEST
@@ -352,6 +397,43 @@ START_TEST(bad_definitions)
 }
 END_TEST
 
+/* Profiles that the search could not work with, each spoilt in one place. */
+START_TEST(bad_profiles)
+{
+	static const double bad[] = {-1, NAN, INFINITY, 0};
+	struct table table = scene_thesis_table();
+	struct planner_def def = planner_def_default();
+	struct cost_profile *p = &def.profile;
+	double *positive[] = {&p->max_cut, &p->max_speed, &p->pocket_speed, &p->speed_step};
+	double *other[] = {&p->w_distance, &p->w_angle,	  &p->w_balls,	    &p->w_rails,   &p->ball_cost,
+			   &p->rail_cost,  &p->w_points,  &p->w_speed,	    &p->w_simulation, &p->clearance,
+			   &p->cue_clearance, &p->cue_room, &p->sigma_angle, &p->sigma_speed};
+	static const int aims[] = {0, -1, 10, 1000};
+	struct planner *planner;
+	def.table = &table;
+	for (int n = 0; n < 4 + 14; n++) {
+		double *field = n < 4 ? positive[n] : other[n - 4];
+		for (int b = 0; b < (n < 4 ? 4 : 3); b++) {
+			double good = *field;
+			if (field == &p->speed_step && isinf(bad[b]))
+				continue; /* one speed only: harmless */
+			*field = bad[b];
+			ck_assert_int_eq(planner_create(&planner, &def), -EINVAL);
+			*field = good;
+		}
+	}
+	for (int i = 0; i < 4; i++) {
+		p->aims = aims[i];
+		ck_assert_int_eq(planner_create(&planner, &def), -EINVAL);
+	}
+	p->aims = 9;
+	p->max_speed = SHOT_SPEED_MAX;
+	p->max_cut = M_PI / 2;
+	ck_assert_int_eq(planner_create(&planner, &def), 0);
+	planner_destroy(planner);
+}
+END_TEST
+
 Suite *test_suite(void)
 {
 	Suite *suite = suite_create("plan");
@@ -363,10 +445,12 @@ Suite *test_suite(void)
 	tcase_add_test(tc, anytime);
 	tcase_add_test(tc, progress_tells_improvements);
 	tcase_add_loop_test(tc, cancelled_from_another_thread, 1, 3);
+	tcase_add_loop_test(tc, cancelled_before_it_runs, 0, SCHEME_COUNT);
 	tcase_add_test(tc, budget_in_seconds);
 	tcase_add_test(tc, memory_is_fixed);
 	tcase_add_test(tc, little_memory);
 	tcase_add_test(tc, bad_definitions);
+	tcase_add_test(tc, bad_profiles);
 	suite_add_tcase(suite, tc);
 	return suite;
 }

@@ -223,6 +223,90 @@ START_TEST(no_legal_shot)
 }
 END_TEST
 
+/* Cue ball, one to three balls and a pocket in one line, from everywhere: the cosine of the cut is 1 or a hair more. */
+static void line_up(struct hard *hard, struct random *random, int pocket, int balls)
+{
+	const struct table *t = &hard->table;
+	double half_x = t->length / 2 - t->ball_radius, half_y = t->width / 2 - t->ball_radius;
+	vec2 hole = t->pocket[pocket].centre;
+	vec2 cue = {random_in(random, -half_x, half_x), random_in(random, -half_y, half_y)};
+	vec2 way = vec2_sub(hole, cue);
+	double length = vec2_norm(way), room = 4 * t->ball_radius / length;
+	add(hard, COLOUR_WHITE, cue.x, cue.y);
+	for (int i = 0; i < balls; i++) {
+		vec2 at = vec2_madd(cue, room + (1 - 2 * room) * i / balls, way);
+		if (fabs(at.x) <= half_x && fabs(at.y) <= half_y)
+			add(hard, i % 2 ? COLOUR_BLACK : COLOUR_RED, at.x, at.y);
+	}
+}
+
+START_TEST(all_in_one_line)
+{
+	static const char *const model[] = {"thesis", "simple", "simple-elastic", "real", "real-mathavan"};
+	struct random random = random_begin("all_in_one_line");
+	random.state += (uint64_t)_i;
+	for (int profile = 0; profile < 2; profile++) {
+		struct cost_profile p = cost_profile_thesis();
+		struct hard h;
+		begin(&h, _i >= 5);
+		if (profile == 1) {
+			p.any_first = p.keep_flukes = p.program_speed = false;
+			p.aims = 9;
+			p.clearance = 0.002;
+			p.rank_by_success = true;
+		}
+		h.planner = scene_planner(&h.table, model[_i % 5], &p, 1);
+		for (int n = 0; n < 60; n++) {
+			h.count = 0;
+			line_up(&h, &random, n % 6, 1 + n / 6 % 3);
+			set_rules(&h);
+			h.request.target = n & 1 ? TARGET_RULES : TARGET_ANY;
+			h.request.rails = n % 4 == 0;
+			h.request.budget.nodes = 60;
+			h.request.plans = 3;
+			char err[200] = "";
+			if (plan_request_check(&h.table, &h.request, err, sizeof err) != 0)
+				continue; /* too near to each other */
+			h.result = scene_run(h.planner, &h.request);
+			ck_assert(h.count == 1 || h.result.plan_count > 0);
+		}
+		end(&h);
+	}
+}
+END_TEST
+
+/* A straight pot over a whole circle of directions: proposed, at the very angle of the line. */
+START_TEST(straight_pots_are_proposed)
+{
+	int tried = 0;
+	for (int n = 0; n < 300; n++) {
+		struct hard h;
+		begin(&h, true);
+		int pocket = n % 6;
+		vec2 hole = h.table.pocket[pocket].centre, out = h.table.pocket[pocket].normal;
+		double turn = (n / 6 - 25) * 0.4 / 25;
+		vec2 in = vec2_unit(vec2_madd(vec2_scale(out, cos(turn)), sin(turn), vec2_perp(out)));
+		vec2 red = vec2_madd(hole, 0.25, in), cue = vec2_madd(hole, 0.5, in);
+		if (fabs(red.x) > 0.88 || fabs(red.y) > 0.42 || fabs(cue.x) > 0.85 || fabs(cue.y) > 0.4)
+			continue; /* too near to a cushion for clearance and cue */
+		add(&h, COLOUR_WHITE, cue.x, cue.y);
+		int ball = add(&h, COLOUR_RED, red.x, red.y);
+		set_rules(&h);
+		search_with(&h, "thesis");
+		double off = INFINITY;
+		for (int i = 0; i < h.result.plan_count; i++) {
+			const struct plan_shot *shot = &h.result.plan[i].shot[0];
+			if (shot->target == ball && shot->pocket == pocket)
+				off = fmin(off, fabs(remainder(shot->shot.angle - atan2(-in.y, -in.x), 2 * M_PI)));
+		}
+		ck_assert(off < 1e-9);
+		tried++;
+		end(&h);
+	}
+	ck_assert_int_gt(tried, 100);
+}
+END_TEST
+
 START_TEST(pocket_blocked_by_another_ball)
 {
 	struct hard h;
@@ -251,6 +335,24 @@ START_TEST(target_in_the_jaws)
 	int red = add(&h, COLOUR_RED, in.x, in.y);
 	set_rules(&h);
 	search_with(&h, name[_i]);
+	ck_assert(proposes(&h, red, pocket));
+	end(&h);
+}
+END_TEST
+
+/* A rest position of the real model beyond the line of the noses: searched, not refused, and the ball is potted. */
+START_TEST(ball_at_rest_between_the_jaws)
+{
+	struct hard h;
+	begin(&h, false);
+	int pocket = table_pocket(&h.table, "BOTTOM-LEFT");
+	vec2 p = h.table.pocket[pocket].centre;
+	vec2 at = vec2_madd(p, h.table.pocket[pocket].radius + 0.001, vec2_from_angle(70 * M_PI / 180));
+	ck_assert(at.x < -h.table.length / 2 || at.y < -h.table.width / 2);
+	add(&h, COLOUR_WHITE, -1.0, -0.3);
+	int red = add(&h, COLOUR_RED, at.x, at.y);
+	set_rules(&h);
+	search_with(&h, "real");
 	ck_assert(proposes(&h, red, pocket));
 	end(&h);
 }
@@ -368,6 +470,17 @@ START_TEST(bad_balls)
 	usual(&h);
 	h.request.ball[1].colour = COLOUR_WHITE;
 	refused(&h, "both white");
+	/* also when one of them is potted, whichever it is, in hand or not */
+	for (int n = 0; n < 6; n++) {
+		usual(&h);
+		h.request.ball[2].colour = COLOUR_WHITE;
+		h.request.state.in_hand = n & 1;
+		if (n / 2 != 2)
+			h.request.ball[n / 2 * 2].phase = BALL_POTTED;
+		else
+			h.request.ball[0].phase = h.request.ball[2].phase = BALL_POTTED;
+		refused(&h, "both white");
+	}
 	usual(&h);
 	h.request.ball[0].colour = COLOUR_RED;
 	refused(&h, "no white");
@@ -490,8 +603,11 @@ Suite *test_suite(void)
 	tcase_add_test(tc, object_ball_frozen_to_the_cushion);
 	tcase_add_test(tc, snookered_on_all_balls);
 	tcase_add_test(tc, no_legal_shot);
+	tcase_add_loop_test(tc, all_in_one_line, 0, 10);
+	tcase_add_test(tc, straight_pots_are_proposed);
 	tcase_add_test(tc, pocket_blocked_by_another_ball);
 	tcase_add_loop_test(tc, target_in_the_jaws, 0, 2);
+	tcase_add_test(tc, ball_at_rest_between_the_jaws);
 	tcase_add_loop_test(tc, cue_ball_in_hand, 0, 2);
 	tcase_add_loop_test(tc, opening_break, 0, 2);
 	tcase_add_test(tc, mirrored_tables);

@@ -206,15 +206,14 @@ static struct plan_request long_request(const struct table *table)
 	request.rails = 3;
 	request.depth = 4;
 	request.speeds = 5;
+	request.run = 1;
 	return request;
 }
 
 static void *cancel_soon(void *planner)
 {
-	for (int i = 0; i < 20; i++) { /* the first may come before the search begins */
-		nanosleep(&(struct timespec){0, 20 * 1000 * 1000}, NULL);
-		planner_cancel(planner);
-	}
+	nanosleep(&(struct timespec){0, 20 * 1000 * 1000}, NULL); /* before the search begins or in it */
+	planner_cancel(planner, 1);
 	return NULL;
 }
 
@@ -231,6 +230,7 @@ START_TEST(cancelled_and_used_again)
 	pthread_join(thread, NULL);
 	ck_assert_int_eq(result.status, PLAN_CANCELLED);
 	ck_assert(!result.exhausted);
+	request.run = 2; /* the cancel was for the first */
 	request.depth = 1;
 	request.rails = 0;
 	result = scene_run(planner, &request);

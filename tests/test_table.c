@@ -5,6 +5,7 @@
 #include <math.h>
 #include <string.h>
 
+#include "physics/sim.h"
 #include "physics/table.h"
 
 static vec2 nearest_pocket(const struct table *t, vec2 point)
@@ -146,6 +147,89 @@ START_TEST(bad_positions_are_refused)
 }
 END_TEST
 
+static bool is_accepted(const struct table *table, vec2 pos)
+{
+	struct ball ball = ball_at(COLOUR_RED, pos);
+	int first, second;
+	char err[200];
+	return table_check_balls(table, &ball, 1, &first, &second, err, sizeof err) == 0;
+}
+
+static bool is_on_bed(const struct table *table, vec2 pos)
+{
+	return fabs(pos.x) <= table->length / 2 && fabs(pos.y) <= table->width / 2;
+}
+
+/* Slow balls towards the corners: wherever one comes to rest, also between the jaws, a position with it is accepted. */
+START_TEST(what_comes_to_rest_is_accepted)
+{
+	static struct sim sim;
+	struct random r = random_begin("what_comes_to_rest_is_accepted");
+	struct table table[2] = {scene_thesis_table(), scene_snooker_table()};
+	struct model model;
+	int beyond = 0;
+	ck_assert(model_from_name("real", &model));
+	for (int n = 0; n < 20000; n++) {
+		const struct table *t = &table[n & 1];
+		const struct pocket *p = &t->pocket[n / 2 % t->pocket_count];
+		vec2 from = vec2_madd(p->centre, 0.25, vec2_unit(p->normal));
+		from = vec2_add(from, (vec2){random_in(&r, -0.08, 0.08), random_in(&r, -0.08, 0.08)});
+		vec2 way = vec2_sub(vec2_add(p->centre, (vec2){random_in(&r, -0.09, 0.09), random_in(&r, -0.09, 0.09)}),
+				    from);
+		struct ball ball = ball_at(COLOUR_RED, from);
+		sim_init(&sim, t, &model, &ball, 1);
+		sim_strike(&sim, 0, &(struct shot){.angle = atan2(way.y, way.x), .speed = random_in(&r, 0.3, 0.9)});
+		sim_run(&sim, &(struct sim_limits){.max_time = INFINITY, .max_events = 1000}, NULL);
+		ball = sim_ball(&sim, 0);
+		if (ball.phase == BALL_POTTED)
+			continue;
+		ck_assert_msg(is_accepted(t, ball.pos), "(%.17g, %.17g) on table %d", ball.pos.x, ball.pos.y, n & 1);
+		beyond += !is_on_bed(t, ball.pos);
+	}
+	ck_assert_int_gt(beyond, 20);
+}
+END_TEST
+
+/* Beyond the bed nothing lies in a pocket's circle, in a jaw, behind a nose or behind a pocket. */
+START_TEST(solid_places_are_refused)
+{
+	struct random r = random_begin("solid_places_are_refused");
+	struct table table[2] = {scene_thesis_table(), scene_snooker_table()};
+	int accepted = 0;
+	for (int n = 0; n < 200000; n++) {
+		const struct table *t = &table[n & 1];
+		vec2 pos = {random_in(&r, -0.6, 0.6) * t->length, random_in(&r, -0.6, 0.6) * t->width};
+		if (is_on_bed(t, pos) || !is_accepted(t, pos))
+			continue;
+		accepted++;
+		double nearest = INFINITY;
+		for (int i = 0; i < t->pocket_count; i++) {
+			nearest = fmin(nearest, vec2_dist(pos, t->pocket[i].centre));
+			ck_assert(vec2_dist(pos, t->pocket[i].centre) > t->pocket[i].radius);
+		}
+		ck_assert_msg(nearest < 0.15, "(%g, %g) is %g m from a pocket", pos.x, pos.y, nearest);
+		for (int i = 0; i < t->jaw_count; i++)
+			ck_assert(vec2_dist(pos, t->jaw[i].centre) > t->jaw[i].radius);
+		for (int i = 0; i < t->cushion_count; i++) {
+			/* the way there from the middle of the mouth crosses no nose */
+			const struct cushion *c = &t->cushion[i];
+			double along = vec2_dot(vec2_sub(pos, c->a), c->along);
+			if (along >= 0 && along <= c->span)
+				ck_assert(vec2_dot(vec2_sub(pos, c->a), c->normal) > 0);
+		}
+	}
+	ck_assert_int_gt(accepted, 20);
+	ck_assert(!is_accepted(&table[1], (vec2){-1.66, -0.892})); /* behind the rail, within reach of the jaw */
+	ck_assert(!is_accepted(&table[1], (vec2){-1.85, -0.955})); /* behind the pocket's middle */
+	struct table box = scene_box_table(2, 1);
+	ck_assert(!is_accepted(&box, (vec2){1.0001, 0}));
+	ck_assert(is_accepted(&box, (vec2){1, 0.5}));
+	/* width is width and length is length */
+	ck_assert(!is_accepted(&box, (vec2){0, 0.6}));
+	ck_assert(is_accepted(&box, (vec2){0.6, 0}));
+}
+END_TEST
+
 Suite *test_suite(void)
 {
 	Suite *suite = suite_create("table");
@@ -156,6 +240,8 @@ Suite *test_suite(void)
 	tcase_add_test(tcase, bad_tables_are_refused);
 	tcase_add_test(tcase, pockets_by_name);
 	tcase_add_test(tcase, bad_positions_are_refused);
+	tcase_add_test(tcase, what_comes_to_rest_is_accepted);
+	tcase_add_test(tcase, solid_places_are_refused);
 	suite_add_tcase(suite, tcase);
 	return suite;
 }

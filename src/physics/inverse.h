@@ -15,7 +15,8 @@ double leg_rolling_forward(const struct table *table, double v_start, double way
 double leg_rolling_backward(const struct table *table, double v_end, double way);
 
 /* Ball on resting ball, thesis model (8.113): speed of the struck ball for a hit at cut angle with cosine cos_cut in
- * (0, 1], and its inverse. */
+ * (0, 1], and its inverse. What rounding makes more than 1 counts as 1; at a cosine of 0 nothing is handed on, and no
+ * speed is enough (INFINITY). */
 double hit_forward(const struct table *table, double v, double cos_cut);
 double hit_backward(const struct table *table, double u, double cos_cut);
 

@@ -218,10 +218,47 @@ int table_pocket(const struct table *table, const char *name)
 	return -1;
 }
 
-/* The centre must be on the bed; where a jaw or a pocket begins is for the simulation to find. */
 static bool on_bed(const struct table *table, vec2 pos)
 {
 	return fabs(pos.x) <= table->length / 2 && fabs(pos.y) <= table->width / 2;
+}
+
+static bool behind_nose(const struct cushion *c, vec2 pos)
+{
+	vec2 from = vec2_sub(pos, c->a);
+	double along = vec2_dot(from, c->along);
+	return !c->two_sided && along >= 0 && along <= c->span && vec2_dot(from, c->normal) <= 0;
+}
+
+/* In the mouth of a pocket a ball may lie beyond the line of the noses: before the pocket and no farther from it than
+ * its jaws, not yet within its circle, and outside of all that is solid. */
+static bool in_mouth(const struct table *table, int pocket, vec2 pos)
+{
+	const struct pocket *p = &table->pocket[pocket];
+	vec2 from = vec2_sub(pos, p->centre);
+	double reach = 0;
+	for (int i = 0; i < table->jaw_count; i++) {
+		if (vec2_dist(pos, table->jaw[i].centre) <= table->jaw[i].radius)
+			return false;
+		if (table->region[pocket].jaws >> i & 1)
+			reach = fmax(reach, vec2_dist(table->jaw[i].centre, p->centre));
+	}
+	if (vec2_dot(from, p->normal) <= 0 || vec2_norm(from) <= p->radius || vec2_norm(from) > reach)
+		return false;
+	for (int i = 0; i < table->cushion_count; i++)
+		if (behind_nose(&table->cushion[i], pos))
+			return false;
+	return true;
+}
+
+/* The centre must be on the bed or in the mouth of a pocket; where exactly a nose or a jaw begins is for the simulation
+ * to find. */
+static bool may_lie(const struct table *table, vec2 pos)
+{
+	bool may = on_bed(table, pos);
+	for (int i = 0; i < table->pocket_count && !may; i++)
+		may = in_mouth(table, i, pos);
+	return may;
 }
 
 int table_check_balls(const struct table *table, const struct ball *ball, int count, int *first, int *second, char *err,
@@ -234,7 +271,7 @@ int table_check_balls(const struct table *table, const struct ball *ball, int co
 		*first = i;
 		if (!ball_is_finite(&ball[i]))
 			return refuse(err, err_size, "position or motion is not finite");
-		if (!on_bed(table, ball[i].pos))
+		if (!may_lie(table, ball[i].pos))
 			return refuse(err, err_size, "(%.1f, %.1f) mm is not on the bed", 1e3 * ball[i].pos.x,
 				      1e3 * ball[i].pos.y);
 		for (int j = 0; j < i; j++) {

@@ -91,8 +91,9 @@ int table_finish(struct table *table, char *err, size_t err_size);
 /* Pocket of that name, -1 when there is none. */
 int table_pocket(const struct table *table, const char *name);
 
-/* Checks a position: finite, inside the bed, no two balls overlapping by more than 1e-4 m (what a camera cannot resolve
- * is the caller's to separate). Returns 0, or -EINVAL; *first and *second name the culprits (second -1 if only one). */
+/* Checks a position: finite, each centre on the bed or in the mouth of a pocket (between its jaws, not in its circle),
+ * no two balls overlapping by more than 1e-4 m (what a camera cannot resolve is the caller's to separate). Returns 0, or
+ * -EINVAL; *first and *second name the culprits (second -1 if only one). */
 int table_check_balls(const struct table *table, const struct ball *ball, int count, int *first, int *second, char *err,
 		      size_t err_size);
 

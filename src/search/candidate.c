@@ -285,7 +285,7 @@ int candidate_expand(const struct scene *scene, const struct node *node, struct 
 	return out.count;
 }
 
-void candidate_goals(const struct scene *scene, const struct node *node, struct goal goal[PLAN_CHAIN_MAX])
+bool candidate_goals(const struct scene *scene, const struct node *node, struct goal goal[PLAN_CHAIN_MAX])
 {
 	vec2 to = scene->table->pocket[node->pocket].centre;
 	if (node->aim != AIM_ALONG)
@@ -297,10 +297,11 @@ void candidate_goals(const struct scene *scene, const struct node *node, struct 
 		struct way way;
 		vec2 start = scene->ball[node->chain[i]].pos;
 		images_init(&images, scene->mirrors, to, (vec2){1, 0}, scene->rails);
-		bool built = way_build(&way, scene->mirrors, &images, node->sequence[i], start);
-		assert(built);
-		(void)built;
+		if (!images.valid[node->sequence[i]] ||
+		    !way_build(&way, scene->mirrors, &images, node->sequence[i], start))
+			return false;
 		goal[i] = (struct goal){to, way.rails};
 		to = vec2_madd(start, -2 * scene->table->ball_radius / way.leg[0], vec2_sub(way.point[1], start));
 	}
+	return true;
 }

@@ -51,12 +51,13 @@ struct node candidate_root(const struct scene *scene, int pocket, int aim);
 int candidate_expand(const struct scene *scene, const struct node *node, struct node *child, int capacity,
 		     bool *overflow);
 
-/* Where each ball of a chain must go (place of contact, for chain[0] the pocket), and over how many cushions. */
+/* Where each ball of a chain must go (place of contact, for chain[0] the pocket), and over how many cushions. False when
+ * a way at the very end of a nose is, by rounding, none any more. */
 struct goal {
 	vec2 point;
 	int rails;
 };
-void candidate_goals(const struct scene *scene, const struct node *node, struct goal goal[PLAN_CHAIN_MAX]);
+bool candidate_goals(const struct scene *scene, const struct node *node, struct goal goal[PLAN_CHAIN_MAX]);
 
 /* Start speed for an end speed after a leg (4.33), in the form that the profile asks for. rolling: it comes off a
  * cushion. */

@@ -55,10 +55,24 @@ static int take_memory(struct planner *planner)
 	return rc;
 }
 
+/* What the search takes for granted of a profile; false for NaN, too. */
+static bool profile_is_valid(const struct cost_profile *p)
+{
+	const double not_negative[] = {p->w_distance,	p->w_angle,	  p->w_balls,	    p->w_rails,	    p->ball_cost,
+				       p->rail_cost,	p->w_points,	  p->w_speed,	    p->w_simulation, p->clearance,
+				       p->cue_clearance, p->cue_room,	  p->sigma_angle,   p->sigma_speed};
+	bool valid = p->max_cut > 0 && p->max_cut <= M_PI / 2 && p->max_speed > 0 && p->max_speed <= SHOT_SPEED_MAX &&
+		     p->pocket_speed > 0 && isfinite(p->pocket_speed) && p->speed_step > 0 && p->aims >= 1 &&
+		     p->aims <= AIMS_MAX - 1;
+	for (size_t i = 0; i < sizeof not_negative / sizeof not_negative[0]; i++)
+		valid &= not_negative[i] >= 0 && isfinite(not_negative[i]);
+	return valid;
+}
+
 static bool def_is_valid(const struct planner_def *def)
 {
 	bool windows = def->sync_window > 0 && (def->workers + 1) * def->sync_window <= def->sync_period;
-	return def->table && def->workers >= 1 && def->workers <= PLAN_WORKERS_MAX && def->memory > fixed_memory() &&
+	return def->table && profile_is_valid(&def->profile) && def->workers >= 1 && def->workers <= PLAN_WORKERS_MAX && def->memory > fixed_memory() &&
 	       def->scheme >= SCHEME_BATCH && def->scheme < SCHEME_COUNT &&
 	       (def->scheme != SCHEME_WINDOWS || (windows && def->now));
 }
@@ -97,9 +111,12 @@ void planner_destroy(struct planner *planner)
 	free(planner);
 }
 
-void planner_cancel(struct planner *planner)
+void planner_cancel(struct planner *planner, uint64_t run)
 {
-	atomic_store_explicit(&planner->cancel, true, memory_order_relaxed);
+	uint64_t before = atomic_load_explicit(&planner->cancelled, memory_order_relaxed);
+	while (before < run && !atomic_compare_exchange_weak_explicit(&planner->cancelled, &before, run,
+								      memory_order_relaxed, memory_order_relaxed))
+		continue;
 }
 
 static void export_plan(const struct planner *planner, const struct solution *solution, struct plan *plan)
@@ -187,13 +204,12 @@ int planner_run(struct planner *planner, const struct plan_request *request, pla
 	}
 	if (rc != 0)
 		return rc;
-	atomic_store_explicit(&planner->cancel, false, memory_order_relaxed);
 	planner->request = request;
 	search(planner, progress, context, result);
-	planner_export(planner, search_is_cancelled(planner) ? planner->def.progress_plans : planner->def.result_plans,
-		       result);
+	bool cancelled = search_is_cancelled(planner);
+	planner_export(planner, cancelled ? planner->def.progress_plans : planner->def.result_plans, result);
 	planner->request = NULL;
-	if (!atomic_load_explicit(&planner->cancel, memory_order_relaxed))
+	if (!cancelled)
 		return 0;
 	result->status = PLAN_CANCELLED;
 	return -ECANCELED;

@@ -48,7 +48,7 @@ struct plan_budget {
 };
 
 struct plan_request {
-	struct ball ball[BALL_MAX]; /* exactly one white on the table; all at rest */
+	struct ball ball[BALL_MAX]; /* exactly one white, on the table unless state.in_hand; all at rest or potted */
 	int ball_count;
 	struct rules_state state; /* used for TARGET_RULES and for the shots after the first */
 	enum plan_target_kind target;
@@ -62,6 +62,7 @@ struct plan_request {
 	int tolerances; /* of so many of the best plans tolerance and success are found, 0..PLAN_MAX; costs some 40
 			   simulations a shot */
 	struct plan_budget budget;
+	uint64_t run; /* number by which planner_cancel() names this run, the caller's, rising from 1; 0: none can */
 };
 /* Direct and via one ball, no cushions, one shot, one speed, 10 plans, tolerance of one, no budget. */
 struct plan_request plan_request_default(void);
@@ -123,7 +124,8 @@ struct planner_def {
 struct planner_def planner_def_default(void);
 
 struct planner;
-/* 0, -EINVAL or -ENOMEM; *out is NULL on failure. Caller destroys. */
+/* 0, -EINVAL (also for a profile with a value that no player can have: aims 1..9, max_cut up to 90 degrees, speeds above
+ * 0 and up to SHOT_SPEED_MAX, the rest not negative) or -ENOMEM; *out is NULL on failure. Caller destroys. */
 int planner_create(struct planner **out, const struct planner_def *def);
 void planner_destroy(struct planner *planner); /* NULL is fine */
 
@@ -143,8 +145,9 @@ int planner_run(struct planner *planner, const struct plan_request *request, pla
 /* From any thread. */
 void planner_figures(const struct planner *planner, struct plan_figures *out);
 
-/* From any thread: the running search ends soon with -ECANCELED. */
-void planner_cancel(struct planner *planner);
+/* From any thread: runs of requests numbered 1 to run end soon with -ECANCELED, whether they run by now or are still to
+ * begin: a cancel given between the request and its run is not lost, and one that comes late ends no later run. */
+void planner_cancel(struct planner *planner, uint64_t run);
 
 /* Plays one planned shot again from its own start: fills trace, true when the same balls fall in the same pockets and
  * the hash is equal. */

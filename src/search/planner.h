@@ -90,7 +90,7 @@ struct planner {
 	struct frontier frontier;
 	struct crew *crew; /* NULL for SCHEME_BATCH */
 	struct shown shown;
-	atomic_bool cancel;
+	_Atomic uint64_t cancelled; /* runs up to this number are */
 
 	/* of the running search */
 	const struct plan_request *request;

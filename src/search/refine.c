@@ -147,7 +147,8 @@ bool shot_refine(const struct planner *planner, struct slot *slot, struct worksp
 		 struct rules_outcome *outcome)
 {
 	struct aiming aiming = {.planner = planner, .slot = slot, .work = work, .record = record, .outcome = outcome};
-	candidate_goals(&planner->state[slot->node.state].scene, &slot->node, aiming.goal);
+	if (!candidate_goals(&planner->state[slot->node.state].scene, &slot->node, aiming.goal))
+		return false;
 	double angle = record->shot.angle;
 	for (int i = 0; i < FASTER_MAX && record->shot.speed <= fmin(planner->def.profile.max_speed, SHOT_SPEED_MAX);
 	     i++) {

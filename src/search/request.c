@@ -50,9 +50,28 @@ static int check_ranges(const struct plan_request *request, char *err, size_t er
 	return 0;
 }
 
-static int check_balls(const struct plan_request *request, char *err, size_t err_size)
+/* Exactly one white, whatever its phase: a potted one beside one on the table would leave it open which is played. */
+static int check_cue_ball(const struct plan_request *request, char *err, size_t err_size)
 {
 	int cue = -1;
+	for (int i = 0; i < request->ball_count; i++) {
+		if (request->ball[i].colour != COLOUR_WHITE)
+			continue;
+		if (cue >= 0) {
+			snprintf(err, err_size, "balls %d and %d are both white", cue, i);
+			return -EINVAL;
+		}
+		cue = i;
+	}
+	if (cue < 0 || (request->ball[cue].phase == BALL_POTTED && !request->state.in_hand)) {
+		snprintf(err, err_size, "there is no white ball on the table");
+		return -EINVAL;
+	}
+	return 0;
+}
+
+static int check_balls(const struct plan_request *request, char *err, size_t err_size)
+{
 	for (int i = 0; i < request->ball_count; i++) {
 		const struct ball *ball = &request->ball[i];
 		if (ball->colour < COLOUR_WHITE || ball->colour >= COLOUR_COUNT) {
@@ -63,19 +82,8 @@ static int check_balls(const struct plan_request *request, char *err, size_t err
 			snprintf(err, err_size, "ball %d is not at rest", i);
 			return -EINVAL;
 		}
-		if (ball->colour != COLOUR_WHITE || (ball->phase == BALL_POTTED && !request->state.in_hand))
-			continue;
-		if (cue >= 0) {
-			snprintf(err, err_size, "balls %d and %d are both white", cue, i);
-			return -EINVAL;
-		}
-		cue = i;
 	}
-	if (cue < 0) {
-		snprintf(err, err_size, "there is no white ball on the table");
-		return -EINVAL;
-	}
-	return 0;
+	return check_cue_ball(request, err, err_size);
 }
 
 static int check_target(const struct plan_request *request, char *err, size_t err_size)

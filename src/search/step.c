@@ -6,7 +6,8 @@
 
 bool search_is_cancelled(const struct planner *planner)
 {
-	return atomic_load_explicit(&planner->cancel, memory_order_relaxed);
+	uint64_t run = planner->request->run;
+	return run > 0 && run <= atomic_load_explicit(&planner->cancelled, memory_order_relaxed);
 }
 
 bool search_is_over(const struct planner *planner)

@@ -2,7 +2,6 @@
 
 #include <errno.h>
 #include <pthread.h>
-#include <stdatomic.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
@@ -41,12 +40,12 @@ struct planner_service {
 	int descriptor;		     /* eventfd: answers wait */
 	struct trace_entry *scratch; /* owned, the search thread's */
 	billiard_plan_t draft;	     /* the search thread's */
-	atomic_bool unwanted;	     /* the running search is to end; reset when the next is taken */
 
 	pthread_mutex_t lock; /* of all below */
 	pthread_cond_t wake;
 	bool stop;
 	bool has_request, busy;
+	uint64_t run; /* number of the running or last search */
 	int64_t present_id; /* newest id taken */
 	billiard_plan_request_t request;
 	double request_time; /* s, monotonic */
@@ -60,18 +59,13 @@ struct planner_service {
 /* What one search needs besides the service. */
 struct search {
 	struct planner_service *service;
-	int64_t id;
 	int32_t sequence;
 	double request_time, started, last_sent;
 };
 
-/* The search's clock. It is asked often, so this is where a search that nobody wants any more is ended:
- * planner_cancel() alone would be lost when it comes just before the search begins. */
-static double search_clock(void *context)
+static double search_clock(void *unused)
 {
-	struct planner_service *service = context;
-	if (atomic_load_explicit(&service->unwanted, memory_order_relaxed))
-		planner_cancel(service->planner);
+	(void)unused;
 	return clock_seconds();
 }
 
@@ -137,14 +131,16 @@ static void on_progress(void *context, const struct plan_result *result)
 	send_plan(search, false);
 }
 
-static void run_search(struct planner_service *service, const billiard_plan_request_t *message, double request_time)
+static void run_search(struct planner_service *service, const billiard_plan_request_t *message, uint64_t run,
+		       double request_time)
 {
 	char err[sizeof service->draft.reason] = "";
-	struct search search = {service, message->id, 0, request_time, clock_seconds(), 0};
+	struct search search = {service, 0, request_time, clock_seconds(), 0};
 	struct plan_request request;
 	struct plan_result result = {0};
 	plan_message_begin(&service->draft, message);
 	int r = plan_request_from_message(&request, message, &service->config->table, err, sizeof err);
+	request.run = run;
 	if (r == 0)
 		spend(&request, request_time);
 	if (r == 0)
@@ -183,10 +179,10 @@ static void *search_thread(void *context)
 		double request_time = service->request_time;
 		service->has_request = false;
 		service->busy = true;
-		atomic_store_explicit(&service->unwanted, false, memory_order_relaxed);
+		uint64_t run = ++service->run;
 		pthread_mutex_unlock(&service->lock);
 		double began = clock_seconds(), cpu = thread_seconds();
-		run_search(service, &request, request_time);
+		run_search(service, &request, run, request_time);
 		pthread_mutex_lock(&service->lock);
 		service->figures.searched += clock_seconds() - began;
 		service->figures.manager += thread_seconds() - cpu;
@@ -235,7 +231,6 @@ int planner_service_create(struct planner_service **out, const struct config *co
 	service->scratch = malloc(PLAN_TRACE_MAX * sizeof service->scratch[0]);
 	struct planner_def def = define(config);
 	def.now = search_clock;
-	def.now_context = service;
 	int r = service->descriptor < 0 ? -errno
 		: !service->scratch	? -ENOMEM
 					: planner_create(&service->planner, &def);
@@ -260,7 +255,7 @@ void planner_service_destroy(struct planner_service *service)
 		pthread_mutex_lock(&service->lock);
 		service->stop = true;
 		service->has_request = false;
-		atomic_store_explicit(&service->unwanted, true, memory_order_relaxed);
+		planner_cancel(service->planner, UINT64_MAX);
 		pthread_cond_signal(&service->wake);
 		pthread_mutex_unlock(&service->lock);
 		pthread_join(service->thread, NULL);
@@ -296,7 +291,7 @@ static void answer_without_search(struct planner_service *service, const billiar
 static void drop_present(struct planner_service *service)
 {
 	if (!service->has_request) {
-		atomic_store_explicit(&service->unwanted, service->busy, memory_order_relaxed);
+		planner_cancel(service->planner, service->run);
 		return;
 	}
 	answer_without_search(service, &service->request, PLAN_MESSAGE_CANCELLED, REPLACED);
