@@ -70,7 +70,12 @@ works 'ball_pocket *RED1 .*TOP-RIGHT' simulate "$folder/pot.txt"
 works '"event":"ball_pocket","balls":\["RED1"\],"pocket":"TOP-RIGHT","state":\[{"id":"WHITE0","x":' simulate --json "$folder/pot.txt"
 works '"event":"ball_ball","balls":\["WHITE0","RED1"\]' simulate --json --speed 1000 --angle 0 "$folder/two.txt"
 works 'ball_ball' simulate -c config/snooker-12ft.conf --speed 1000 --angle 0 --side 0.2 --follow -0.3 --elevation 5 "$folder/two.txt"
-for model in thesis simple simple-elastic real real-mathavan; do
+# one list of models: the help's, the documentation's and the configurations'
+models=$("$billiard" simulate --help | sed -n 's/^  --model NAME  *//p')
+[ -n "$models" ] && "$billiard" plan --help | grep -qF -- "$models" && grep -qF "$models" docs/configuration.md &&
+	grep -qF "$models" config/thesis-table.conf && grep -qF "$models" config/snooker-12ft.conf
+result $? "one list of models: $models"
+for model in ${models//,/ }; do
 	works 'rolling_stationary' simulate --model "$model" --speed 1000 --angle 0 "$folder/two.txt"
 done
 call simulate --json "$folder/pot.txt"

@@ -216,7 +216,7 @@ static const struct {
 	{"jaws = ()", "jaws = 3", "table.jaws: found 3, allowed a list ( ) of 0 to 32 groups"},
 	{"jaws = ()", "jaws = ( 3 )", "table.jaws[0]: found 3, allowed a group { }"},
 	{"model = \"thesis\"", "model = \"thesi\"",
-	 "model: found \"thesi\", allowed thesis, simple, simple-elastic, real or real-mathavan"},
+	 "model: found \"thesi\", allowed thesis, simple, simple-elastic, real, real-mathavan"},
 	{"scheme = \"steal\"", "scheme = \"theft\"",
 	 "planner.scheme: found \"theft\", allowed batch, windows, queue, steal"},
 	{"profile = \"thesis\"", "profile = \"pro\"", "profile: found \"pro\", allowed a name from profiles"},

@@ -218,6 +218,79 @@ START_TEST(clusters)
 }
 END_TEST
 
+/* Which contacts are one instant: those due within 4 ps that hang together by a shared ball, each once, in order. */
+START_TEST(what_is_one_instant)
+{
+	struct table table = scene_box_table(3, 1.5);
+	struct model model = model_named("real");
+	struct ball ball[6];
+	for (int i = 0; i < 6; i++)
+		ball[i] = ball_at(COLOUR_RED, (vec2){0.2 * i - 0.5, 0});
+	static struct sim sim;
+	sim_init(&sim, &table, &model, ball, 6);
+	queue_set_pair(&sim.queue, 1, 3, 1);
+	queue_set_pair(&sim.queue, 0, 3, 1 + 3.9e-12); /* at once, shares ball 3 */
+	queue_set_pair(&sim.queue, 0, 5, 1 + 1e-12);   /* hangs on by ball 0 */
+	queue_set_pair(&sim.queue, 2, 4, 1);	       /* at once, shares nothing */
+	queue_set_pair(&sim.queue, 2, 3, 1 + 4.5e-12); /* later */
+	struct event first = {1, EVENT_BALL_BALL, 1, 3};
+	struct group group;
+	collide_collect(&sim, &first, &group);
+	ck_assert_int_eq(group.count, 3);
+	ck_assert_int_eq((int)group.balls, 1 << 0 | 1 << 1 | 1 << 3 | 1 << 5);
+	const int want[3][2] = {{0, 3}, {0, 5}, {1, 3}};
+	for (int i = 0; i < 3; i++) {
+		ck_assert_int_eq(group.contact[i].ball, want[i][0]);
+		ck_assert_int_eq(group.contact[i].other, want[i][1]);
+		ck_assert_double_eq(group.contact[i].time, 1);
+	}
+}
+END_TEST
+
+/* A pressed pair parts with half the pressing acceleration times 2 ms, at the cost of its own motion. */
+START_TEST(a_pressed_pair_parts)
+{
+	struct table table = scene_box_table(3, 1.5);
+	struct model model = model_named("simple");
+	model.pocket = POCKET_MODEL_NONE;
+	double d = 2 * table.ball_radius, g = table.material.mu_slide * table.material.gravity;
+	struct ball ball[2] = {ball_at(COLOUR_RED, (vec2){0, 0}), ball_at(COLOUR_RED, (vec2){d, 0})};
+	ball[0].vel = (vec2){1e-3, 0};
+	ball[0].spin[1] = 150; /* topspin drives it on */
+	static struct sim sim;
+	sim_init(&sim, &table, &model, ball, 2);
+	double energy = sim_energy(&sim);
+	struct group group = {.contact = {{0, EVENT_BALL_BALL, 0, 1}}, .count = 1, .balls = 3};
+	collide_balls(&sim, &group);
+	double leave = sim.ball[1].vel.x - sim.ball[0].vel.x;
+	double rms = sqrt(1e-6 + 0.4 * table.ball_radius * table.ball_radius * 150 * 150);
+	double interval = fmax(2e-3, 2e-3 * rms / g);
+	/* the driven ball slides forward under its spin, the other backward against its own slip: both press */
+	ck_assert_double_ge(leave, 0.49 * g * interval);
+	ck_assert_double_le(leave, 1.01 * g * interval);
+	ck_assert_double_le(sim_energy(&sim), energy * (1 + 1e-12));
+	ck_assert_double_ge(sim_energy(&sim), 0.95 * energy);
+}
+END_TEST
+
+/* Thesis motion: who rolled rolls on along its new way, who slid slides anew without spin. */
+START_TEST(thesis_phases_after_a_contact)
+{
+	struct table table = scene_thesis_table();
+	struct model model = model_named("thesis");
+	vec2 at = vec2_scale(vec2_from_angle(0.6), 2 * table.ball_radius);
+	for (int rolls = 0; rolls < 2; rolls++) {
+		struct ball a = moving((vec2){0, 0}, (vec2){2, 0}, rolls ? BALL_ROLLING : BALL_SLIDING, &table);
+		struct ball b = ball_at(COLOUR_RED, at);
+		contact_balls(&table, &model, &a, &b);
+		ck_assert_int_eq(a.phase, rolls ? BALL_ROLLING : BALL_SLIDING);
+		ck_assert_int_eq(b.phase, BALL_SLIDING);
+		ck_assert(b.spin[0] == 0 && b.spin[1] == 0 && b.spin[2] == 0);
+		ck_assert(!rolls || fabs(a.spin[1] * table.ball_radius - a.vel.x) < 1e-15);
+	}
+}
+END_TEST
+
 Suite *test_suite(void)
 {
 	Suite *suite = suite_create("contact");
@@ -229,6 +302,9 @@ Suite *test_suite(void)
 	tcase_add_test(tcase, cushions_mirror);
 	tcase_add_test(tcase, one_on_two);
 	tcase_add_test(tcase, clusters);
+	tcase_add_test(tcase, what_is_one_instant);
+	tcase_add_test(tcase, a_pressed_pair_parts);
+	tcase_add_test(tcase, thesis_phases_after_a_contact);
 	suite_add_tcase(suite, tcase);
 	return suite;
 }

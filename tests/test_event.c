@@ -52,30 +52,12 @@ START_TEST(kinds_have_names)
 }
 END_TEST
 
-/* The figure of thesis 4.6.3.4: white hits red 1, white stops, red 1 falls; red 2 lies still throughout. */
-START_TEST(nodes_of_the_thesis_example)
-{
-	struct event strike = {0, EVENT_STRIKE, 0, -1}, hit = {1, EVENT_BALL_BALL, 0, 1},
-		     stop = {2, EVENT_ROLLING_REST, 0, -1}, fall = {3, EVENT_POCKET, 1, 0};
-	ck_assert_int_eq(event_node(&strike, 0, BALL_SLIDING), NODE_ENERGY_INPUT);
-	ck_assert_int_eq(event_node(&strike, 1, BALL_REST), NODE_NO_ENERGY);
-	ck_assert_int_eq(event_node(&hit, 0, BALL_SLIDING), NODE_ENERGY_TRANSFER);
-	ck_assert_int_eq(event_node(&hit, 1, BALL_SLIDING), NODE_ENERGY_TRANSFER);
-	ck_assert_int_eq(event_node(&hit, 2, BALL_REST), NODE_NO_ENERGY);
-	ck_assert_int_eq(event_node(&stop, 0, BALL_REST), NODE_NO_ENERGY);
-	ck_assert_int_eq(event_node(&stop, 1, BALL_ROLLING), NODE_CUTTING);
-	ck_assert_int_eq(event_node(&fall, 1, BALL_POTTED), NODE_OUT_OF_SYSTEM);
-	ck_assert_int_eq(event_node(&fall, 2, BALL_REST), NODE_NO_ENERGY);
-}
-END_TEST
-
 Suite *test_suite(void)
 {
 	Suite *suite = suite_create("event");
 	TCase *tcase = tcase_create("event");
 	tcase_add_test(tcase, order_is_strict_and_total);
 	tcase_add_test(tcase, kinds_have_names);
-	tcase_add_test(tcase, nodes_of_the_thesis_example);
 	suite_add_tcase(suite, tcase);
 	return suite;
 }

@@ -1,5 +1,8 @@
 #include "harness.h"
 
+#include <stdio.h>
+#include <string.h>
+
 #include "physics/model.h"
 
 START_TEST(models_by_name)
@@ -19,6 +22,22 @@ START_TEST(models_by_name)
 }
 END_TEST
 
+/* The list for people names every model, and nothing else. */
+START_TEST(the_list_holds_every_model)
+{
+	char list[200];
+	struct model model;
+	int count = 0;
+	snprintf(list, sizeof list, "%s", model_names());
+	for (char *rest, *name = strtok_r(list, ", ", &rest); name; name = strtok_r(NULL, ", ", &rest)) {
+		ck_assert_msg(model_from_name(name, &model), "%s", name);
+		count++;
+	}
+	ck_assert_int_eq(count, 5);
+	ck_assert_ptr_null(strstr(model_names(), ", ,"));
+}
+END_TEST
+
 START_TEST(unknown_names_change_nothing)
 {
 	struct model model = {.cushion = CUSHION_MODEL_MATHAVAN};
@@ -33,6 +52,7 @@ Suite *test_suite(void)
 	Suite *suite = suite_create("model");
 	TCase *tcase = tcase_create("model");
 	tcase_add_test(tcase, models_by_name);
+	tcase_add_test(tcase, the_list_holds_every_model);
 	tcase_add_test(tcase, unknown_names_change_nothing);
 	suite_add_tcase(suite, tcase);
 	return suite;

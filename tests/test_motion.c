@@ -5,6 +5,7 @@
 #include <gsl/gsl_errno.h>
 #include <gsl/gsl_odeiv2.h>
 #include <math.h>
+#include <string.h>
 
 #include "physics/motion.h"
 
@@ -183,6 +184,77 @@ START_TEST(phases_from_velocity_and_spin)
 }
 END_TEST
 
+/* A phase is not run backwards, and what rests or has fallen stays. */
+START_TEST(time_only_goes_on)
+{
+	struct table table = scene_thesis_table();
+	struct random r = random_begin("time_only_goes_on");
+	for (int i = 0; i < 1000; i++) {
+		struct ball b = random_sliding(&r, &table), after = motion_advance(&b, &table, -1e-3);
+		ck_assert(memcmp(&b, &after, sizeof b) == 0);
+		b.phase = i & 1 ? BALL_REST : BALL_POTTED;
+		after = motion_advance(&b, &table, 1);
+		ck_assert(memcmp(&b, &after, sizeof b) == 0);
+	}
+}
+END_TEST
+
+/* Which of roll and vertical spin ends first decides what comes: a step to each side of the tie. */
+START_TEST(roll_or_spin_ends_first)
+{
+	struct table table = scene_thesis_table();
+	const struct material *m = &table.material;
+	double r = table.ball_radius, rate = 2.5 * m->mu_spin * m->gravity / (r * r);
+	for (int sign = -1; sign <= 1; sign += 2) {
+		struct ball b = ball_at(COLOUR_RED, (vec2){0, 0});
+		b.vel = (vec2){0.7, -0.2};
+		motion_roll(&b, &table);
+		enum event_kind kind;
+		double spin = rate * motion_phase_end(&b, &table, &kind);
+		b.spin[2] = sign * spin * (1 + 1e-9);
+		motion_phase_end(&b, &table, &kind);
+		ck_assert_int_eq(kind, EVENT_ROLLING_SPINNING);
+		b.spin[2] = sign * spin * (1 - 1e-9);
+		motion_phase_end(&b, &table, &kind);
+		ck_assert_int_eq(kind, EVENT_ROLLING_REST);
+	}
+}
+END_TEST
+
+/* The borders of rest and of rolling, a step inside and a step outside. */
+START_TEST(rest_and_roll_have_a_border)
+{
+	struct table table = scene_thesis_table();
+	double r = table.ball_radius;
+	for (int k = 0; k < 2; k++) {
+		double f = k ? 1.01 : 0.99;
+		struct ball b = ball_at(COLOUR_RED, (vec2){0, 0});
+		b.vel = (vec2){0, f * 1e-8};
+		motion_classify(&b, &table);
+		ck_assert_int_eq(b.phase, k ? BALL_SLIDING : BALL_REST);
+		b.vel = (vec2){0, 0};
+		b.spin[0] = f * 1e-8 / r;
+		motion_classify(&b, &table);
+		ck_assert_int_eq(b.phase, k ? BALL_SLIDING : BALL_REST);
+		b.spin[0] = 0;
+		b.spin[2] = f * 1e-8 / r;
+		motion_classify(&b, &table);
+		ck_assert_int_eq(b.phase, k ? BALL_SPINNING : BALL_REST);
+		ck_assert(k || b.spin[2] == 0);
+		b.spin[2] = 5;
+		b.vel = (vec2){1, 0};
+		motion_roll(&b, &table);
+		ck_assert(b.spin[2] == 0 && b.phase == BALL_ROLLING);
+		b.spin[1] += f * 2e-13 / r;
+		motion_classify(&b, &table);
+		ck_assert_int_eq(b.phase, k ? BALL_SLIDING : BALL_ROLLING);
+		b.vel = (vec2){f * 1e-8, 0};
+		motion_roll(&b, &table);
+		ck_assert_int_eq(b.phase, k ? BALL_ROLLING : BALL_REST);
+	}
+}
+END_TEST
+
 Suite *test_suite(void)
 {
 	Suite *suite = suite_create("motion");
@@ -195,6 +267,9 @@ Suite *test_suite(void)
 	tcase_add_test(tcase, parts_add_up);
 	tcase_add_test(tcase, rolling_and_spinning_end);
 	tcase_add_test(tcase, phases_from_velocity_and_spin);
+	tcase_add_test(tcase, time_only_goes_on);
+	tcase_add_test(tcase, roll_or_spin_ends_first);
+	tcase_add_test(tcase, rest_and_roll_have_a_border);
 	suite_add_tcase(suite, tcase);
 	return suite;
 }

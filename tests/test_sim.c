@@ -8,9 +8,10 @@
 #include <string.h>
 
 #include "physics/motion.h"
+#include "physics/queue.h"
 #include "physics/sim.h"
 
-static const char *const model_names[] = {"thesis", "simple", "simple-elastic", "real", "real-mathavan"};
+static const char *const every_model[] = {"thesis", "simple", "simple-elastic", "real", "real-mathavan"};
 enum { MODELS = 5, EVENTS_MAX = 20000 };
 
 static struct model model_named(const char *name)
@@ -216,9 +217,9 @@ static void check_invariants(const char *name, const struct table *table, const 
 START_TEST(invariants_thesis_table)
 {
 	struct table table = scene_thesis_table();
-	struct model model = model_named(model_names[_i]);
+	struct model model = model_named(every_model[_i]);
 	char name[64];
-	snprintf(name, sizeof name, "invariants %s, thesis table", model_names[_i]);
+	snprintf(name, sizeof name, "invariants %s, thesis table", every_model[_i]);
 	check_invariants(name, &table, &model, shots_wanted(_i == 4 ? 500 : 5000));
 }
 END_TEST
@@ -226,9 +227,9 @@ END_TEST
 START_TEST(invariants_snooker_table)
 {
 	struct table table = scene_snooker_table();
-	struct model model = model_named(model_names[_i]);
+	struct model model = model_named(every_model[_i]);
 	char name[64];
-	snprintf(name, sizeof name, "invariants %s, snooker table", model_names[_i]);
+	snprintf(name, sizeof name, "invariants %s, snooker table", every_model[_i]);
 	check_invariants(name, &table, &model, shots_wanted(_i == 4 ? 500 : 5000));
 }
 END_TEST
@@ -236,10 +237,10 @@ END_TEST
 START_TEST(invariants_no_pockets)
 {
 	struct table table = scene_box_table(1.0, 0.6);
-	struct model model = model_named(model_names[_i]);
+	struct model model = model_named(every_model[_i]);
 	model.pocket = POCKET_MODEL_NONE;
 	char name[64];
-	snprintf(name, sizeof name, "invariants %s, no pockets", model_names[_i]);
+	snprintf(name, sizeof name, "invariants %s, no pockets", every_model[_i]);
 	check_invariants(name, &table, &model, shots_wanted(_i == 4 ? 300 : 3000));
 }
 END_TEST
@@ -353,7 +354,7 @@ START_TEST(a_simulation_allocates_nothing)
 		struct trace trace;
 		struct sim_limits limits = {INFINITY, 2000};
 		struct shot shot = {.angle = 0.1, .speed = 9.6, .side = 0.2};
-		model_from_name(model_names[k], &model);
+		model_from_name(every_model[k], &model);
 		trace_init(&trace, entry, 2000);
 		sim_init(&sim, &table, &model, ball, SCENE_RACK_COUNT);
 		sim_strike(&sim, 0, &shot);
@@ -453,6 +454,126 @@ START_TEST(struck_again_while_moving)
 }
 END_TEST
 
+/* An event found a little late lies behind the present: time stands still for it, and never runs back. */
+START_TEST(time_never_runs_back)
+{
+	struct table table = scene_box_table(3, 1.5);
+	struct model model = model_named("real");
+	struct ball ball[3] = {ball_at(COLOUR_WHITE, (vec2){-0.5, 0}), ball_at(COLOUR_RED, (vec2){0, 0}),
+			       ball_at(COLOUR_RED, (vec2){0, 0.2})};
+	static struct sim sim;
+	sim_init(&sim, &table, &model, ball, 3);
+	struct shot shot = {.angle = 0, .speed = 1};
+	sim_strike(&sim, 0, &shot);
+	struct event event;
+	do
+		ck_assert(sim_step(&sim, &event));
+	while (event.kind != EVENT_BALL_BALL);
+	double now = sim.time;
+	queue_set_pair(&sim.queue, 1, 2, now - 1e-12);
+	vec2 place = sim_ball(&sim, 1).pos;
+	ck_assert(sim_step(&sim, &event));
+	ck_assert(event.ball == 1 && event.other == 2);
+	ck_assert_double_eq(event.time, now);
+	ck_assert_double_eq(sim.time, now);
+	ck_assert(sim.ball_time[1] == now && sim.ball_time[2] == now);
+	ck_assert(sim.ball[1].pos.x == place.x && sim.ball[1].pos.y == place.y);
+	sim.queue.own[0].time = now - 1e-12;
+	ck_assert(sim_step(&sim, &event));
+	ck_assert_double_eq(event.time, now);
+}
+END_TEST
+
+/* Every number of the state is in its hash, and nothing else: neither the sign of a zero nor padding. */
+START_TEST(the_hash_sees_every_number)
+{
+	struct table table = scene_snooker_table();
+	struct model model = model_named("real");
+	struct ball ball[SCENE_RACK_COUNT];
+	scene_rack(&table, ball);
+	static struct sim sim, other;
+	sim_init(&sim, &table, &model, ball, SCENE_RACK_COUNT);
+	struct shot shot = {.angle = 0.1, .speed = 5, .side = 0.1};
+	sim_strike(&sim, 0, &shot);
+	uint64_t hash = sim_hash(&sim, 1);
+	for (int i = 0; i < SCENE_RACK_COUNT; i++) {
+		for (int k = 0; k < 10; k++) {
+			other = sim;
+			struct ball *b = &other.ball[i];
+			double *number[] = {&b->pos.x,	 &b->pos.y,   &b->vel.x,   &b->vel.y,
+					    &b->spin[0], &b->spin[1], &b->spin[2], &other.ball_time[i]};
+			if (k < 8)
+				*number[k] = nextafter(*number[k], INFINITY);
+			else if (k == 8)
+				b->phase = b->phase == BALL_REST ? BALL_SPINNING : BALL_REST;
+			else
+				b->colour = b->colour == COLOUR_RED ? COLOUR_PINK : COLOUR_RED;
+			ck_assert_msg(sim_hash(&other, 1) != hash, "ball %d, number %d", i, k);
+		}
+	}
+	other = sim;
+	other.time = nextafter(sim.time, 1);
+	ck_assert(sim_hash(&other, 1) != hash);
+	other = sim;
+	other.event_count++;
+	ck_assert(sim_hash(&other, 1) != hash);
+	other = sim;
+	other.ball[3].vel = (vec2){-0.0, -0.0};
+	ck_assert(sim_hash(&other, 1) == hash);
+}
+END_TEST
+
+/* m v^2 / 2 + 2/5 m r^2 w^2 / 2 of what is on the table; in thesis motion translation only. */
+START_TEST(energy_by_hand)
+{
+	struct table table = scene_snooker_table();
+	struct model real = model_named("real"), thesis = model_named("thesis");
+	struct ball ball[3] = {ball_at(COLOUR_WHITE, (vec2){0, 0}), ball_at(COLOUR_RED, (vec2){0.5, 0}),
+			       ball_at(COLOUR_RED, (vec2){1, 0})};
+	double m = table.ball_mass, r = table.ball_radius;
+	ball[0].vel = (vec2){3, 4};
+	ball[0].spin[0] = 10;
+	ball[1].spin[2] = 20;
+	ball[2].vel = (vec2){9, 9};
+	ball[2].phase = BALL_POTTED;
+	static struct sim sim;
+	sim_init(&sim, &table, &real, ball, 3);
+	ck_assert_double_eq_tol(sim_energy(&sim), 0.5 * m * (25 + 0.4 * r * r * 500), 1e-15);
+	sim_init(&sim, &table, &thesis, ball, 3);
+	ck_assert_double_eq_tol(sim_energy(&sim), 0.5 * m * 25, 1e-15);
+}
+END_TEST
+
+/* The borders of what may be struck, a step inside and a step outside each. */
+START_TEST(playable_shots)
+{
+	const struct {
+		struct shot shot;
+		bool ok;
+	} row[] = {
+		{{.speed = 1e-9}, true},
+		{{.speed = 20}, true},
+		{{.speed = 0}, false},
+		{{.speed = -1}, false},
+		{{.speed = 20.0001}, false},
+		{{.speed = NAN}, false},
+		{{.speed = 1, .angle = 1e6}, true},
+		{{.speed = 1, .angle = NAN}, false},
+		{{.speed = 1, .angle = INFINITY}, false},
+		{{.speed = 1, .side = 0.6, .follow = 0.799}, true},
+		{{.speed = 1, .side = 0.6, .follow = 0.8}, false},
+		{{.speed = 1, .side = -1, .follow = 0}, false},
+		{{.speed = 1, .side = NAN}, false},
+		{{.speed = 1, .elevation = 1.57}, true},
+		{{.speed = 1, .elevation = 1.5708}, false},
+		{{.speed = 1, .elevation = -1e-9}, false},
+		{{.speed = 1, .elevation = NAN}, false},
+	};
+	for (size_t i = 0; i < sizeof row / sizeof *row; i++)
+		ck_assert_msg(shot_is_playable(&row[i].shot) == row[i].ok, "row %zu", i);
+}
+END_TEST
+
 Suite *test_suite(void)
 {
 	Suite *suite = suite_create("sim");
@@ -465,6 +586,10 @@ Suite *test_suite(void)
 	tcase_add_test(interface, strike_gives_speed_and_spin);
 	tcase_add_test(interface, limits_stop_a_run);
 	tcase_add_test(interface, struck_again_while_moving);
+	tcase_add_test(interface, time_never_runs_back);
+	tcase_add_test(interface, the_hash_sees_every_number);
+	tcase_add_test(interface, energy_by_hand);
+	tcase_add_test(interface, playable_shots);
 	suite_add_tcase(suite, interface);
 	TCase *invariants = tcase_create("invariants");
 	tcase_set_timeout(invariants, 3600);

@@ -3,6 +3,8 @@
 
 #include <errno.h>
 #include <math.h>
+#include <stddef.h>
+#include <stdlib.h>
 #include <string.h>
 
 #include "physics/sim.h"
@@ -230,6 +232,128 @@ START_TEST(solid_places_are_refused)
 }
 END_TEST
 
+/* The bed reaches half its length along x and half its width along y, edges included: a step inside, a step outside, on
+ * every side. */
+START_TEST(the_bed_ends_where_it_should)
+{
+	struct table t = scene_thesis_table();
+	double x = t.length / 2, y = t.width / 2, step = 1e-6;
+	const struct {
+		vec2 pos;
+		bool on;
+	} place[] = {
+		{{x - step, 0}, true},	{{step - x, 0}, true},	{{x + step, 0}, false}, {{-x - step, 0}, false},
+		{{0, y - step}, true},	{{0, step - y}, true},	{{0, y + step}, false}, {{0, -y - step}, false},
+		{{x, y}, true},		{{-x, -y}, true},	{{y + step, 0}, true},	{{0, x - step}, false},
+		{{x, y + step}, false}, {{x + step, y}, false},
+	};
+	for (size_t i = 0; i < sizeof place / sizeof *place; i++) {
+		struct ball ball = ball_at(COLOUR_RED, place[i].pos);
+		int first, second, got = table_check_balls(&t, &ball, 1, &first, &second, NULL, 0);
+		ck_assert_msg((got == 0) == place[i].on, "(%g, %g)", place[i].pos.x, place[i].pos.y);
+		ck_assert_int_eq(first, place[i].on ? -1 : 0);
+	}
+}
+END_TEST
+
+/* Balls may seem to overlap by a tenth of a millimetre; which two is told in order of their numbers. */
+START_TEST(an_overlap_has_a_limit)
+{
+	struct table t = scene_thesis_table();
+	double d = 2 * t.ball_radius;
+	for (int k = 0; k < 2; k++) {
+		struct ball ball[4] = {ball_at(COLOUR_WHITE, (vec2){0, 0}), ball_at(COLOUR_RED, (vec2){0.3, 0}),
+				       ball_at(COLOUR_RED, (vec2){-0.3, 0.1}),
+				       ball_at(COLOUR_RED, (vec2){0.3, d - (k ? 1.01e-4 : 0.99e-4)})};
+		int first, second;
+		ck_assert_int_eq(table_check_balls(&t, ball, 4, &first, &second, NULL, 0), k ? -EINVAL : 0);
+		ck_assert_int_eq(first, k ? 1 : -1);
+		ck_assert_int_eq(second, k ? 3 : -1);
+		ball[1].phase = BALL_POTTED; /* what has fallen is in nobody's way */
+		ck_assert_int_eq(table_check_balls(&t, ball, 4, &first, &second, NULL, 0), 0);
+	}
+}
+END_TEST
+
+/* Each constant a step outside of each end of its range: refused by its name. */
+START_TEST(each_constant_has_a_range)
+{
+#define AT(name, low, high)                                                                                            \
+	{                                                                                                              \
+#name, offsetof(struct material, name), low, high                                                      \
+	}
+	const struct {
+		const char *name;
+		size_t offset;
+		double low, high;
+	} row[] = {
+		AT(gravity, 1, 30),	AT(mu_slide, 1e-4, 2),	   AT(mu_roll, 1e-5, 1),      AT(mu_spin, 1e-6, 1),
+		AT(loss_ball, 0, 0.99), AT(loss_cushion, 0, 0.99), AT(topspin_factor, 0, 10), AT(e_ball, 0, 1),
+		AT(e_cushion, 0, 1),	AT(mu_cushion, 0, 2),	   AT(mu_ball_a, 0, 2),	      AT(mu_ball_b, 0, 2),
+		AT(mu_ball_c, 0, 100),	AT(stronge_omega, 0, 100),
+	};
+#undef AT
+	for (size_t i = 0; i < sizeof row / sizeof *row; i++) {
+		const double value[] = {row[i].low, row[i].high, nextafter(row[i].low, -INFINITY),
+					nextafter(row[i].high, INFINITY), NAN};
+		for (int k = 0; k < 5; k++) {
+			struct table t = scene_thesis_table();
+			char err[200] = "";
+			memcpy((char *)&t.material + row[i].offset, &value[k], sizeof value[k]);
+			ck_assert_msg(table_finish(&t, err, sizeof err) == (k < 2 ? 0 : -EINVAL), "%s %g", row[i].name,
+				      value[k]);
+			ck_assert(k < 2 || strncmp(err, row[i].name, strlen(row[i].name)) == 0);
+		}
+	}
+}
+END_TEST
+
+/* An end is covered by a jaw whose surface passes within half a millimetre, from either side. */
+START_TEST(a_jaw_covers_what_it_touches)
+{
+	for (int k = -2; k <= 2; k++) {
+		struct table t = scene_box_table(2, 1);
+		int tips = t.jaw_count;
+		t.jaw_count = 1;
+		t.jaw[0] = (struct jaw){.centre = {1.05, 0.5}, .radius = 0.05 + 0.3e-3 * k, .nose_height = 0.03};
+		ck_assert_int_eq(table_finish(&t, NULL, 0), 0);
+		/* its corner is the end of two rails */
+		ck_assert_int_eq(t.jaw_count, tips + (abs(k) < 2 ? 0 : 1));
+	}
+}
+END_TEST
+
+/* Whatever can be touched from a place is in a region whose box holds the place. */
+START_TEST(regions_leave_nothing_out)
+{
+	struct table table[2] = {scene_thesis_table(), scene_snooker_table()};
+	struct random r = random_begin("regions_leave_nothing_out");
+	for (int n = 0; n < 100000; n++) {
+		const struct table *t = &table[n & 1];
+		vec2 p = {random_in(&r, -0.55, 0.55) * t->length, random_in(&r, -0.55, 0.55) * t->width};
+		uint32_t jaws = 0, cushions = 0, pockets = 0;
+		for (int i = 0; i < t->region_count; i++) {
+			const struct table_region *g = &t->region[i];
+			if (p.x < g->low.x || p.x > g->high.x || p.y < g->low.y || p.y > g->high.y)
+				continue;
+			jaws |= g->jaws;
+			cushions |= g->cushions;
+			pockets |= g->pockets;
+		}
+		for (int i = 0; i < t->jaw_count; i++)
+			ck_assert(jaws >> i & 1 || vec2_dist(p, t->jaw[i].centre) > t->jaw[i].radius + t->ball_radius);
+		for (int i = 0; i < t->pocket_count; i++)
+			ck_assert(pockets >> i & 1 || vec2_dist(p, t->pocket[i].centre) > t->pocket[i].radius);
+		for (int i = 0; i < t->cushion_count; i++) {
+			const struct cushion *c = &t->cushion[i];
+			double foot = fmin(fmax(vec2_dot(vec2_sub(p, c->a), c->along), 0), c->span);
+			ck_assert(c->main_rail || cushions >> i & 1 ||
+				  vec2_dist(p, vec2_madd(c->a, foot, c->along)) > t->ball_radius);
+		}
+	}
+}
+END_TEST
+
 Suite *test_suite(void)
 {
 	Suite *suite = suite_create("table");
@@ -242,6 +366,11 @@ Suite *test_suite(void)
 	tcase_add_test(tcase, bad_positions_are_refused);
 	tcase_add_test(tcase, what_comes_to_rest_is_accepted);
 	tcase_add_test(tcase, solid_places_are_refused);
+	tcase_add_test(tcase, the_bed_ends_where_it_should);
+	tcase_add_test(tcase, an_overlap_has_a_limit);
+	tcase_add_test(tcase, each_constant_has_a_range);
+	tcase_add_test(tcase, a_jaw_covers_what_it_touches);
+	tcase_add_test(tcase, regions_leave_nothing_out);
 	suite_add_tcase(suite, tcase);
 	return suite;
 }

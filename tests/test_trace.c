@@ -55,33 +55,74 @@ START_TEST(agrees_with_the_simulation)
 }
 END_TEST
 
-START_TEST(windows_join)
+static struct ball last_after(const struct trace *trace, int ball, int upto, double *time)
+{
+	struct ball last = trace->start[ball];
+	*time = 0;
+	for (int i = 0; i <= upto; i++) {
+		const struct event *e = &trace->entry[i].event;
+		if (e->ball != ball && !(e->kind == EVENT_BALL_BALL && e->other == ball))
+			continue;
+		last = trace->entry[i].after[e->ball != ball];
+		*time = e->time;
+	}
+	return last;
+}
+
+/* At an event's own time the state is that after it, down to velocity, spin and phase; a moment before, that before. */
+START_TEST(an_event_counts_from_its_own_time)
 {
 	struct table table = scene_snooker_table();
 	static struct sim sim;
-	static struct keyframe_window window[500];
 	struct trace trace;
 	struct sim_limits limits = {INFINITY, ENTRIES};
 	trace_init(&trace, entry, ENTRIES);
 	break_shot(&sim, &table, names[_i]);
 	sim_run(&sim, &limits, &trace);
-	int moving = 0;
-	for (int ball = 0; ball < sim.ball_count; ball++) {
-		int n = trace_windows(&trace, ball, window, 500);
-		ck_assert_int_le(n, 500);
-		ck_assert_int_eq(trace_windows(&trace, ball, window, 0), n);
-		moving += n > 0;
-		double last = 0;
-		for (int k = 0; k < n; k++) {
-			ck_assert_double_eq(window[k].begin, last);
-			ck_assert_double_lt(window[k].begin, window[k].end);
-			/* an event changes velocities, never positions */
-			if (k > 0)
-				ck_assert_double_le(vec2_dist(window[k].from.pos, window[k - 1].to.pos), 1e-12);
-			last = window[k].end;
+	int turned = 0;
+	for (int i = 0; i < trace.count; i++) {
+		const struct event *e = &trace.entry[i].event;
+		bool last_of_instant = i + 1 == trace.count || trace.entry[i + 1].event.time > e->time;
+		bool first_of_instant = i > 0 && trace.entry[i - 1].event.time < e->time;
+		struct ball want = trace.entry[i].after[0], got = trace_at(&trace, e->ball, e->time);
+		if (last_of_instant) {
+			ck_assert(got.vel.x == want.vel.x && got.vel.y == want.vel.y && got.phase == want.phase);
+			ck_assert(got.spin[0] == want.spin[0] && got.spin[1] == want.spin[1] &&
+				  got.spin[2] == want.spin[2]);
+			ck_assert(got.pos.x == want.pos.x && got.pos.y == want.pos.y);
 		}
+		if (!first_of_instant)
+			continue;
+		double moment = e->time - 1e-9, begin;
+		struct ball before = last_after(&trace, e->ball, i - 1, &begin);
+		if (moment <= begin)
+			continue;
+		got = trace_at(&trace, e->ball, moment);
+		ck_assert_int_eq(got.phase, before.phase);
+		turned += e->kind <= EVENT_JAW && vec2_dist(got.vel, want.vel) > 0.01;
 	}
-	ck_assert_int_gt(moving, 5);
+	ck_assert_int_gt(turned, 5);
+}
+END_TEST
+
+/* A phase does not outlast its end, whatever the clock says: time before the start is the start, and a ball whose trace
+ * was cut off stops where its phase does. */
+START_TEST(a_cut_trace_stops)
+{
+	struct table table = scene_snooker_table();
+	struct trace trace;
+	trace_init(&trace, NULL, 0);
+	trace.table = &table;
+	trace.ball_count = 1;
+	trace.start[0] = ball_at(COLOUR_WHITE, (vec2){0, 0});
+	trace.start[0].vel = (vec2){0.2, 0};
+	trace.start[0].spin[1] = 0.2 / table.ball_radius;
+	trace.start[0].phase = BALL_ROLLING;
+	double way = 0.5 * 0.2 * 0.2 / (table.material.mu_roll * table.material.gravity);
+	ck_assert_double_eq_tol(trace_at(&trace, 0, 1000).pos.x, way, 1e-12);
+	ck_assert_double_eq(trace_at(&trace, 0, 0).vel.x, 0.2);
+	ck_assert_double_eq(trace_at(&trace, 0, -1).pos.x, 0);
+	ck_assert_double_eq(trace_at(&trace, 0, -1).vel.x, 0.2);
 }
 END_TEST
 
@@ -110,7 +151,6 @@ START_TEST(an_empty_trace_is_the_start)
 	trace.start[0] = ball_at(COLOUR_BLUE, (vec2){0.1, 0.2});
 	ck_assert_double_eq(trace_end(&trace), 0);
 	ck_assert_double_eq(trace_at(&trace, 0, 3).pos.x, 0.1);
-	ck_assert_int_eq(trace_windows(&trace, 0, NULL, 0), 0);
 }
 END_TEST
 
@@ -120,7 +160,8 @@ Suite *test_suite(void)
 	TCase *tcase = tcase_create("trace");
 	tcase_set_timeout(tcase, 60);
 	tcase_add_loop_test(tcase, agrees_with_the_simulation, 0, 3);
-	tcase_add_loop_test(tcase, windows_join, 0, 3);
+	tcase_add_loop_test(tcase, an_event_counts_from_its_own_time, 0, 3);
+	tcase_add_test(tcase, a_cut_trace_stops);
 	tcase_add_test(tcase, keeps_the_first_when_full);
 	tcase_add_test(tcase, an_empty_trace_is_the_start);
 	suite_add_tcase(suite, tcase);

@@ -3,21 +3,7 @@
 #include "physics/contact.h"
 #include "physics/contact_real.h"
 #include "physics/motion.h"
-
-/* Contacts within this time are one instant: above the rounding of a contact's time, and at 20 m/s less than 1e-10 m.
- */
-static const double SAME_INSTANT = 4e-12; /* s */
-/* Two bodies that press on each other meet again no sooner than this, nor than this share of the time in which the
- * cloth could take all their motion. The restitution laws have no force that lasts; without a bound, a pressed pair
- * bounces ever faster (Luding and McNamara 1998 bound it likewise). */
-static const double PRESS_INTERVAL = 2e-3; /* s */
-static const double PRESS_SHARE = 2e-3;
-/* At most this share of the pair's root mean square speed goes into keeping them apart. */
-static const double LIFT_SHARE = 0.2;
-/* More contacts than this at one instant are an inelastic collapse, not a cascade through a rack. */
-enum { CASCADE_MAX = 150 };
-/* The thesis' topspin adds speed at each contact: in a cascade of one instant it counts for this many contacts only. */
-enum { TOPSPIN_MAX = 32 };
+#include "physics/tolerances.h"
 
 /* Balls whose contact with this one is due. */
 static uint32_t due_partners(const struct sim *sim, int ball, double limit)
@@ -77,7 +63,7 @@ static double lift_speed(const struct sim *sim, double press, double rms_speed)
 	double lift = 0.5 * press * interval;
 	double most = LIFT_SHARE * rms_speed;
 	if (sim->instant_contacts > CASCADE_MAX)
-		lift = fmax(lift, 1e-4 * rms_speed * (sim->instant_contacts - CASCADE_MAX));
+		lift = fmax(lift, CASCADE_LIFT * rms_speed * (sim->instant_contacts - CASCADE_MAX));
 	return lift < most ? lift : most;
 }
 
@@ -143,7 +129,7 @@ static double joint_change(const struct joint *j, double share)
  * changes of a sweep are found before any is applied: no order among the contacts. */
 static void solve_joints(struct joint *joint, int count, double share, double speed)
 {
-	for (int sweep = 0; sweep < 2000; sweep++) {
+	for (int sweep = 0; sweep < SWEEPS_MAX; sweep++) {
 		double largest = 0;
 		for (int i = 0; i < count; i++) {
 			joint[i].change = joint_change(&joint[i], share);
@@ -155,7 +141,7 @@ static void solve_joints(struct joint *joint, int count, double share, double sp
 			j->a->vel = vec2_madd(j->a->vel, -j->change, j->n);
 			j->b->vel = vec2_madd(j->b->vel, j->change, j->n);
 		}
-		if (largest <= 1e-16 * speed)
+		if (largest <= SWEEP_END * speed)
 			break;
 	}
 }

@@ -1,6 +1,7 @@
 #include <assert.h>
 
 #include "physics/contact_real.h"
+#include "physics/tolerances.h"
 
 /* Frame of the paper: x along the cushion, y into it, z up. The ball touches the nose at I, radius (0, c, s) from its
  * centre, and the cloth at C, radius (0, 0, -1). The normal impulse P at I, per unit mass (m/s), is the variable of
@@ -11,7 +12,7 @@
  * impulse. While a slip is small its direction obeys a stiff equation: hence an L-stable method. */
 
 enum { I1, I2, C1, C2, WORK, DIM, SLIPS = WORK };
-enum place { NOSE, CLOTH };
+enum impact_place { NOSE, CLOTH };
 
 struct impact {
 	double s, c; /* sine and cosine of the nose's angle above the centre */
@@ -26,7 +27,7 @@ struct friction {
 	vec2 nose, cloth; /* per unit normal impulse at I */
 };
 
-static vec2 slip_of(const double z[DIM], enum place place)
+static vec2 slip_of(const double z[DIM], enum impact_place place)
 {
 	return place == NOSE ? (vec2){z[I1], z[I2]} : (vec2){z[C1], z[C2]};
 }
@@ -42,7 +43,7 @@ static double cloth_load(const struct impact *im, vec2 nose)
 	return fmax(im->s - im->c * nose.y, 0);
 }
 
-static double most_friction(const struct impact *im, enum place place, const struct friction *f)
+static double most_friction(const struct impact *im, enum impact_place place, const struct friction *f)
 {
 	return place == NOSE ? im->mu[NOSE] : im->mu[CLOTH] * cloth_load(im, f->nose);
 }
@@ -54,7 +55,7 @@ static vec2 clamp_length(vec2 a, double most)
 }
 
 /* Friction that keeps the slip at one place as it is, given the friction at the other. */
-static vec2 holding_friction(const struct impact *im, enum place place, const struct friction *f)
+static vec2 holding_friction(const struct impact *im, enum impact_place place, const struct friction *f)
 {
 	double s = im->s, c = im->c, coupling = -(1 - 2.5 * s) / 3.5;
 	if (place == NOSE)
@@ -62,7 +63,7 @@ static vec2 holding_friction(const struct impact *im, enum place place, const st
 	return (vec2){coupling * f->nose.x, (c - (2.5 - s) * f->nose.y) / 3.5};
 }
 
-static vec2 slip_direction(const struct impact *im, const double z[DIM], enum place place)
+static vec2 slip_direction(const struct impact *im, const double z[DIM], enum impact_place place)
 {
 	vec2 slip = slip_of(z, place);
 	double n = vec2_norm(slip);
@@ -127,7 +128,7 @@ static void derivative(const struct impact *im, const double z[DIM], double out[
 }
 
 /* Change of a slip's direction with a change of the slip. */
-static vec2 direction_change(const struct impact *im, enum place place, vec2 change)
+static vec2 direction_change(const struct impact *im, enum impact_place place, vec2 change)
 {
 	vec2 slip = slip_of(im->z, place);
 	double n = vec2_norm(slip);
@@ -269,7 +270,8 @@ static double step(const struct impact *im, double h, const double rates[DIM], d
 }
 
 /* Slip begins in the direction in which friction against it leaves it growing. */
-static vec2 onset_direction(const struct impact *im, enum place place, struct friction f, vec2 holding, double most)
+static vec2 onset_direction(const struct impact *im, enum impact_place place, struct friction f, vec2 holding,
+			    double most)
 {
 	vec2 direction = vec2_unit(vec2_scale(holding, -1)), before = {0, 0};
 	for (int i = 0; i < 40 && vec2_dist(direction, before) > 1e-9; i++) {
@@ -287,18 +289,18 @@ static void choose_modes(struct impact *im)
 {
 	for (int place = NOSE; place <= CLOTH; place++) {
 		im->onset[place] = (vec2){0, 0};
-		if (vec2_norm(slip_of(im->z, (enum place)place)) <= im->rest_slip)
+		if (vec2_norm(slip_of(im->z, (enum impact_place)place)) <= im->rest_slip)
 			im->stick[place] = true;
 	}
 	for (int place = NOSE; place <= CLOTH; place++) {
 		if (!im->stick[place])
 			continue;
 		struct friction f = friction_at(im, im->z);
-		vec2 holding = holding_friction(im, (enum place)place, &f);
-		double most = most_friction(im, (enum place)place, &f);
+		vec2 holding = holding_friction(im, (enum impact_place)place, &f);
+		double most = most_friction(im, (enum impact_place)place, &f);
 		if (vec2_norm(holding) > most * (1 + 1e-12)) {
 			im->stick[place] = false;
-			im->onset[place] = onset_direction(im, (enum place)place, f, holding, most);
+			im->onset[place] = onset_direction(im, (enum impact_place)place, f, holding, most);
 		}
 	}
 }
@@ -308,11 +310,11 @@ static double slip_limit(const struct impact *im, const double rates[DIM])
 {
 	double limit = INFINITY;
 	for (int place = NOSE; place <= CLOTH; place++) {
-		vec2 slip = slip_of(im->z, (enum place)place);
+		vec2 slip = slip_of(im->z, (enum impact_place)place);
 		double size = vec2_norm(slip);
 		if (im->stick[place] || size <= im->rest_slip)
 			continue;
-		double rate = vec2_dot(slip, slip_of(rates, (enum place)place)) / size;
+		double rate = vec2_dot(slip, slip_of(rates, (enum impact_place)place)) / size;
 		if (rate < 0)
 			limit = fmin(limit, 0.9 * size / -rate);
 	}
@@ -333,30 +335,26 @@ static double impulse_left(const struct impact *im, double target, const double 
 	return speed > 0 ? 2 * left / speed : INFINITY;
 }
 
-/* Shares of the speed before: error estimate allowed a step; a slip that counts as none; an impulse no impact needs. */
-static const double TOLERANCE = 1e-6, REST_SLIP = 1e-5, IMPULSE_MAX = 20;
-enum { STEPS_MAX = 1000 };
-
 /* Integrates to the end of a phase; scale: speed before, m/s. False: friction wedges the ball in, the phase has no end.
  */
 static bool integrate(struct impact *im, double target, double scale)
 {
 	double h = scale, spent = 0;
-	for (int n = 0; n < STEPS_MAX && spent <= IMPULSE_MAX * scale; n++) {
+	for (int n = 0; n < IMPACT_STEPS_MAX && spent <= IMPULSE_MAX * scale; n++) {
 		choose_modes(im);
 		double rates[DIM], z[DIM], j[SLIPS][SLIPS];
 		derivative(im, im->z, rates);
 		double left = impulse_left(im, target, rates);
-		if (left <= 1e-9 * scale)
+		if (left <= IMPULSE_END * scale)
 			return true;
 		jacobian(im, j);
 		h = fmin(fmin(h, slip_limit(im, rates)), left);
 		double error = step(im, h, rates, j, z);
-		bool good = error <= TOLERANCE * scale;
+		bool good = error <= IMPACT_ERROR * scale;
 		spent += good ? h : 0;
 		for (int i = 0; i < DIM && good; i++)
 			im->z[i] = z[i];
-		h *= fmin(5, fmax(0.2, 0.85 * sqrt(sqrt(TOLERANCE * scale / fmax(error, 1e-300)))));
+		h *= fmin(5, fmax(0.2, 0.85 * sqrt(sqrt(IMPACT_ERROR * scale / fmax(error, 1e-300)))));
 	}
 	return false;
 }
@@ -379,7 +377,7 @@ void contact_cushion_mathavan(const struct table *table, vec2 normal, double nos
 	struct impact im = {.s = s,
 			    .c = c,
 			    .mu = {m->mu_cushion, m->mu_slide},
-			    .rest_slip = REST_SLIP * scale,
+			    .rest_slip = IMPACT_REST_SLIP * scale,
 			    .z = {vx + wy * s - wz * c, wx - vy * s, vx - wy, vy + wx, 0}};
 	double first[2] = {im.z[I1], im.z[C1]};
 	bool ends = integrate(&im, NAN, scale);

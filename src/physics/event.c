@@ -1,29 +1,5 @@
 #include "physics/event.h"
 
-static bool takes_part(const struct event *event, int ball)
-{
-	return event->ball == ball || (event->kind == EVENT_BALL_BALL && event->other == ball);
-}
-
-enum node_kind event_node(const struct event *event, int ball, enum ball_phase phase_after)
-{
-	if (phase_after == BALL_POTTED)
-		return NODE_OUT_OF_SYSTEM;
-	if (takes_part(event, ball)) {
-		switch (event->kind) {
-		case EVENT_STRIKE:
-			return NODE_ENERGY_INPUT;
-		case EVENT_BALL_BALL:
-		case EVENT_CUSHION:
-		case EVENT_JAW:
-			return NODE_ENERGY_TRANSFER;
-		default:
-			break;
-		}
-	}
-	return phase_after == BALL_REST ? NODE_NO_ENERGY : NODE_CUTTING;
-}
-
 int event_compare(const struct event *a, const struct event *b)
 {
 	if (a->time != b->time)

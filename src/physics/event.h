@@ -28,12 +28,6 @@ struct event {
 	int16_t other; /* index by kind, -1 none */
 };
 
-/* Node kinds of thesis 4.6.3, as they can be read off an event for one ball. */
-enum node_kind { NODE_ENERGY_INPUT, NODE_ENERGY_TRANSFER, NODE_NO_ENERGY, NODE_OUT_OF_SYSTEM, NODE_CUTTING };
-
-/* The node that thesis 4.6.3 would put for ball at this event, given the ball's phase after it. */
-enum node_kind event_node(const struct event *event, int ball, enum ball_phase phase_after);
-
 /* Strict total order: time, kind, ball, other. Negative, zero, positive. */
 int event_compare(const struct event *a, const struct event *b);
 

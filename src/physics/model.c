@@ -7,16 +7,29 @@
  * chain of contacts makes centimetres of. */
 static const double PROGRAM_GRID = 1e-6;
 
+/* Name, balls, cushions, pockets, thesis motion, contact grid. */
+/* clang-format off: a table is read by its columns. */
+#define MODELS(ROW)                                                                                                    \
+	ROW("thesis", BALL_MODEL_THESIS, CUSHION_MODEL_THESIS, POCKET_MODEL_CIRCLE, true, PROGRAM_GRID)                \
+	ROW("simple", BALL_MODEL_RESTITUTION, CUSHION_MODEL_RESTITUTION, POCKET_MODEL_CIRCLE, false, 0)                \
+	ROW("simple-elastic", BALL_MODEL_ELASTIC, CUSHION_MODEL_MIRROR, POCKET_MODEL_CIRCLE, false, 0)                 \
+	ROW("real", BALL_MODEL_FRICTIONAL, CUSHION_MODEL_STRONGE, POCKET_MODEL_JAWS, false, 0)                         \
+	ROW("real-mathavan", BALL_MODEL_FRICTIONAL, CUSHION_MODEL_MATHAVAN, POCKET_MODEL_JAWS, false, 0)
+/* clang-format on */
+
+#define AS_MODEL(name, ...) {name, {__VA_ARGS__}},
+#define AS_NAME(name, ...)  ", " name
+
 static const struct {
 	const char *name;
 	struct model model;
-} models[] = {
-	{"thesis", {BALL_MODEL_THESIS, CUSHION_MODEL_THESIS, POCKET_MODEL_CIRCLE, true, PROGRAM_GRID}},
-	{"simple", {BALL_MODEL_RESTITUTION, CUSHION_MODEL_RESTITUTION, POCKET_MODEL_CIRCLE, false, 0}},
-	{"simple-elastic", {BALL_MODEL_ELASTIC, CUSHION_MODEL_MIRROR, POCKET_MODEL_CIRCLE, false, 0}},
-	{"real", {BALL_MODEL_FRICTIONAL, CUSHION_MODEL_STRONGE, POCKET_MODEL_JAWS, false, 0}},
-	{"real-mathavan", {BALL_MODEL_FRICTIONAL, CUSHION_MODEL_MATHAVAN, POCKET_MODEL_JAWS, false, 0}},
-};
+} models[] = {MODELS(AS_MODEL)};
+
+const char *model_names(void)
+{
+	static const char list[] = MODELS(AS_NAME);
+	return &list[2]; /* without the first comma */
+}
 
 bool model_from_name(const char *name, struct model *model)
 {

@@ -34,6 +34,9 @@ struct model {
 	double contact_grid;
 };
 
+/* The names of all models for people, with commas between: the one list of them. */
+const char *model_names(void);
+
 /* "thesis", "simple" (restitution, circle), "simple-elastic", "real" (frictional, Stronge, jaws), "real-mathavan".
  * False when there is none of that name. */
 bool model_from_name(const char *name, struct model *model);

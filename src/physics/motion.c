@@ -2,10 +2,7 @@
 
 #include <assert.h>
 
-/* Below this speed a ball is at rest: it would go on for less than 1e-15 m. */
-static const double REST_SPEED = 1e-8; /* m/s */
-/* Slip below this share of the ball's own speed is rounding. */
-static const double SLIP_ROUNDING = 1e-13;
+#include "physics/tolerances.h"
 
 vec2 motion_slip(const struct ball *ball, double radius)
 {

@@ -3,6 +3,8 @@
 #include <math.h>
 #include <stdbool.h>
 
+#include "physics/tolerances.h"
+
 int roots_quadratic(double a, double b, double c, double root[2])
 {
 	if (a == 0) {
@@ -80,10 +82,6 @@ static inline bool falls_at_start(const struct quartic *q)
 	return q->c3 != 0 ? q->c3 < 0 : q->c4 < 0;
 }
 
-enum { NEWTON_MAX = 200 };
-/* Two units in the last place: nearer to a root is not to be had. */
-static const double CLOSE = 4.5e-16;
-
 /* Rising from a root at 0: the same entries without that root. */
 static void divide_by_start(struct quartic *q)
 {
@@ -151,7 +149,7 @@ static double convex_entry(const struct quartic *q, double left, double right)
 			if (disc > 0 && next >= low && next <= right) {
 				/* what the parabola leaves out, over its slope at the root */
 				double cubic = fabs(q->c3 + 4 * q->c4 * s) + fabs(q->c4 * step);
-				if (cubic * fabs(step * step * step) <= CLOSE * next * root)
+				if (cubic * fabs(step * step * step) <= ROOT_CLOSE * next * root)
 					return next;
 				s = next;
 				safe = false;

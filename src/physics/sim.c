@@ -8,19 +8,31 @@
 
 /* ---- events that are known in advance (thesis 8.14) ---- */
 
+static struct mover mover(const struct sim *sim, int i)
+{
+	return (struct mover){&sim->ball[i], &sim->motion[i]};
+}
+
+static struct predictor predictor(struct sim *sim)
+{
+	return (struct predictor){sim->table, &sim->model, &sim->solved};
+}
+
 /* A touched ball's motion is new: its own event and its row and column of pairs with it. */
 static void renew_motion(struct sim *sim, int i)
 {
-	sim->motion[i] = detect_motion(sim->table, &sim->ball[i], sim->ball_time[i]);
-	struct event own = detect_own(sim->table, &sim->model, &sim->ball[i], i, &sim->motion[i], &sim->solved);
+	struct predictor by = predictor(sim);
+	sim->motion[i] = predict_motion(sim->table, &sim->ball[i], sim->ball_time[i]);
+	struct mover self = mover(sim, i);
+	struct event own = predict_own(&by, &self, i);
 	queue_set_own(&sim->queue, i, &own);
 }
 
 static void renew_pair(struct sim *sim, int low, int high)
 {
-	double t = detect_pair(sim->table, &sim->model, &sim->ball[low], &sim->motion[low], &sim->ball[high],
-			       &sim->motion[high], sim->time, &sim->solved);
-	queue_set_pair(&sim->queue, low, high, t);
+	struct predictor by = predictor(sim);
+	struct mover a = mover(sim, low), b = mover(sim, high);
+	queue_set_pair(&sim->queue, low, high, predict_pair(&by, &a, &b, sim->time));
 }
 
 static void renew(struct sim *sim, uint32_t balls)
@@ -79,15 +91,20 @@ static void advance(struct sim *sim, int i)
 	sim->ball_time[i] = sim->time;
 }
 
+bool shot_is_playable(const struct shot *shot)
+{
+	return isfinite(shot->angle) && shot->speed > 0 && shot->speed <= SHOT_SPEED_MAX &&
+	       shot->side * shot->side + shot->follow * shot->follow < 1 && shot->elevation >= 0 &&
+	       shot->elevation < SHOT_ELEVATION_MAX;
+}
+
 /* Offsets are measured across the cue. side > 0 (left of the line of aim) turns the ball clockwise seen from above,
  * spin z < 0; follow > 0 turns it forward. Instantaneous point impact: spin = 5 v / (2 r) times the offset (Leckie and
  * Greenspan 2006), v the speed along the cue. */
 void sim_strike(struct sim *sim, int ball, const struct shot *shot)
 {
 	assert(ball >= 0 && ball < sim->ball_count && sim->ball[ball].phase != BALL_POTTED);
-	assert(isfinite(shot->angle) && shot->speed > 0 && shot->speed <= SHOT_SPEED_MAX);
-	assert(shot->side * shot->side + shot->follow * shot->follow < 1);
-	assert(shot->elevation >= 0 && shot->elevation < 1.5707);
+	assert(shot_is_playable(shot));
 	advance(sim, ball);
 	struct ball *b = &sim->ball[ball];
 	vec2 ahead = vec2_from_angle(shot->angle), right = {ahead.y, -ahead.x};
@@ -145,7 +162,7 @@ static void resolve_own(struct sim *sim, const struct event *event)
 	if (event->kind == EVENT_CUSHION) {
 		const struct cushion *c = &sim->table->cushion[event->other];
 		count_instant(sim);
-		collide_cushion(sim, i, detect_cushion_normal(c, ball->pos), c->nose_height);
+		collide_cushion(sim, i, predict_cushion_normal(c, ball->pos), c->nose_height);
 	} else if (event->kind == EVENT_JAW) {
 		const struct jaw *jaw = &sim->table->jaw[event->other];
 		count_instant(sim);

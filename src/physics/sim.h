@@ -12,6 +12,8 @@
 
 /* m/s; no strike is faster. */
 #define SHOT_SPEED_MAX 20.0
+/* rad; a cue upright leaves no direction. */
+#define SHOT_ELEVATION_MAX 1.5707
 
 /* A cue strike. Defaults to a level centre hit when only angle and speed are set. */
 struct shot {
@@ -21,6 +23,10 @@ struct shot {
 	double follow;	  /* contact point, share of the radius, + = above the middle */
 	double elevation; /* rad, cue raised by, 0 <= elevation < pi/2 */
 };
+
+/* True for a shot in the ranges above, the tip on the ball (side^2 + follow^2 < 1): what every border asks before it
+ * lets a shot in. */
+bool shot_is_playable(const struct shot *shot);
 
 enum sim_end { SIM_AT_REST, SIM_TIME_LIMIT, SIM_EVENT_LIMIT };
 
@@ -37,7 +43,7 @@ struct sim_limits {
 void sim_init(struct sim *sim, const struct table *table, const struct model *model, const struct ball *ball,
 	      int count);
 
-/* Strikes a ball now. Asserts a finite shot in range and a ball that is on the table. */
+/* Strikes a ball now. Asserts shot_is_playable() and a ball that is on the table: both are the border's to check. */
 void sim_strike(struct sim *sim, int ball, const struct shot *shot);
 
 /* Goes to the next event and resolves it. False: all balls are at rest or potted. */

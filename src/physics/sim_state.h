@@ -4,7 +4,7 @@
 
 #include <stdint.h>
 
-#include "physics/detect.h"
+#include "physics/predict.h"
 #include "physics/event.h"
 #include "physics/model.h"
 #include "physics/queue.h"

@@ -5,10 +5,7 @@
 #include <stdio.h>
 #include <string.h>
 
-/* A jaw whose surface passes within this of a cushion's end covers that end (drawings are rounded to 0.1 mm). */
-static const double COVER_TOLERANCE = 5e-4; /* m */
-/* Balls seen by a camera may seem to overlap by this much. */
-static const double OVERLAP_ALLOWED = 1e-4; /* m */
+#include "physics/tolerances.h"
 
 __attribute__((format(printf, 3, 4))) static int refuse(char *err, size_t err_size, const char *format, ...)
 {
@@ -171,18 +168,17 @@ static void region_add(struct table_region *region, vec2 point, double reach)
 /* Pockets, jaws and jaw cushions by the nearest pocket, each with the box from within which it can be touched. */
 static void finish_regions(struct table *t)
 {
-	double slack = 1e-6; /* m; far above rounding, far below a ball */
 	t->region_count = t->pocket_count > 0 ? t->pocket_count : 1;
 	for (int i = 0; i < t->region_count; i++)
 		t->region[i] = (struct table_region){.low = {INFINITY, INFINITY}, .high = {-INFINITY, -INFINITY}};
 	for (int i = 0; i < t->pocket_count; i++) {
 		t->region[i].pockets |= 1u << i;
-		region_add(&t->region[i], t->pocket[i].centre, t->pocket[i].radius + slack);
+		region_add(&t->region[i], t->pocket[i].centre, t->pocket[i].radius + REGION_SLACK);
 	}
 	for (int i = 0; i < t->jaw_count; i++) {
 		struct table_region *region = &t->region[nearest_region(t, t->jaw[i].centre)];
 		region->jaws |= 1u << i;
-		region_add(region, t->jaw[i].centre, t->jaw[i].radius + t->ball_radius + slack);
+		region_add(region, t->jaw[i].centre, t->jaw[i].radius + t->ball_radius + REGION_SLACK);
 	}
 	for (int i = 0; i < t->cushion_count; i++) {
 		const struct cushion *c = &t->cushion[i];
@@ -190,8 +186,8 @@ static void finish_regions(struct table *t)
 			continue;
 		struct table_region *region = &t->region[nearest_region(t, vec2_scale(vec2_add(c->a, c->b), 0.5))];
 		region->cushions |= 1u << i;
-		region_add(region, c->a, t->ball_radius + slack);
-		region_add(region, c->b, t->ball_radius + slack);
+		region_add(region, c->a, t->ball_radius + REGION_SLACK);
+		region_add(region, c->b, t->ball_radius + REGION_SLACK);
 	}
 }
 

@@ -40,25 +40,3 @@ double trace_end(const struct trace *trace)
 {
 	return trace->count > 0 ? trace->entry[trace->count - 1].event.time : 0;
 }
-
-int trace_windows(const struct trace *trace, int ball, struct keyframe_window *window, int capacity)
-{
-	struct ball from = trace->start[ball];
-	double begin = 0;
-	int count = 0;
-	for (int i = 0; i < trace->count; i++) {
-		const struct ball *after = part(&trace->entry[i], ball);
-		double time = trace->entry[i].event.time;
-		if (!after)
-			continue;
-		if (time > begin) {
-			if (count < capacity)
-				window[count] = (struct keyframe_window){begin, time, from,
-									 advance(trace, &from, time - begin)};
-			count++;
-		}
-		from = *after;
-		begin = time;
-	}
-	return count;
-}

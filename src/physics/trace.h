@@ -29,12 +29,4 @@ struct ball trace_at(const struct trace *trace, int ball, double t);
 /* Time of the last event, 0 if there is none. */
 double trace_end(const struct trace *trace);
 
-/* Keyframe windows of thesis 4.6.5: for one ball, pairs of states between which it moves by one closed form. */
-struct keyframe_window {
-	double begin, end;    /* s */
-	struct ball from, to; /* states just after begin and just before end */
-};
-/* Fills at most capacity windows of that ball in order of time, returns how many there are in all. */
-int trace_windows(const struct trace *trace, int ball, struct keyframe_window *window, int capacity);
-
 #endif

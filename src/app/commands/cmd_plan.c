@@ -35,28 +35,29 @@ struct run {
 
 static void help(void)
 {
-	puts("usage: billiard plan [-c CONF] [--depth N] [--rails N] [--balls N] [--target COLOUR|ID|any|rules] "
-	     "[--speeds N]\n"
-	     "                     [--workers N] [--budget-ms N] [--budget-nodes N] [--plans N] [--tolerances N] "
-	     "[--in-hand]\n"
-	     "                     [--model NAME] [--profile NAME] [--json] [--plot FILE.svg|.png] POSITION.txt\n\n"
-	     "  -c, --config CONF  table, default $BILLIARD_CONF or the installed one\n"
-	     "  --depth N          shots ahead, 1..4\n"
-	     "  --rails N          cushions in one leg at most, 0..3\n"
-	     "  --balls N          object balls in a chain at most, 1..3 (1: direct)\n"
-	     "  --target WHAT      a colour (RED, YELLOW, ...), any, rules, or the ID of one ball; default any\n"
-	     "  --speeds N         start speeds tried\n"
-	     "  --workers N        threads, 1..16\n"
-	     "  --budget-ms N      time for the search (0: none)\n"
-	     "  --budget-nodes N   nodes for the search (0: none); the same result every time\n"
-	     "  --plans N          wanted, 1..1024\n"
-	     "  --tolerances N     of so many plans tolerance and success are found\n"
-	     "  --in-hand          the cue ball may be placed in the D\n"
-	     "  --model NAME       thesis, simple, simple-elastic, real, real-mathavan\n"
-	     "  --profile NAME     a player of the configuration\n"
-	     "  --json             one JSON object per plan, then one of figures\n"
-	     "  --plot FILE        draws each shot: FILE-RANK-SHOT\n"
-	     "POSITION.txt holds \"ID, TYPE, x, y\" lines in mm (- is standard input).");
+	printf("usage: billiard plan [-c CONF] [--depth N] [--rails N] [--balls N] [--target COLOUR|ID|any|rules] "
+	       "[--speeds N]\n"
+	       "                     [--workers N] [--budget-ms N] [--budget-nodes N] [--plans N] [--tolerances N] "
+	       "[--in-hand]\n"
+	       "                     [--model NAME] [--profile NAME] [--json] [--plot FILE.svg|.png] POSITION.txt\n\n"
+	       "  -c, --config CONF  table, default $BILLIARD_CONF or the installed one\n"
+	       "  --depth N          shots ahead, 1..4\n"
+	       "  --rails N          cushions in one leg at most, 0..3\n"
+	       "  --balls N          object balls in a chain at most, 1..3 (1: direct)\n"
+	       "  --target WHAT      a colour (RED, YELLOW, ...), any, rules, or the ID of one ball; default any\n"
+	       "  --speeds N         start speeds tried\n"
+	       "  --workers N        threads, 1..16\n"
+	       "  --budget-ms N      time for the search (0: none)\n"
+	       "  --budget-nodes N   nodes for the search (0: none); the same result every time\n"
+	       "  --plans N          wanted, 1..1024\n"
+	       "  --tolerances N     of so many plans tolerance and success are found\n"
+	       "  --in-hand          the cue ball may be placed in the D\n"
+	       "  --model NAME       %s\n"
+	       "  --profile NAME     a player of the configuration\n"
+	       "  --json             one JSON object per plan, then one of figures\n"
+	       "  --plot FILE        draws each shot: FILE-RANK-SHOT\n"
+	       "POSITION.txt holds \"ID, TYPE, x, y\" lines in mm (- is standard input).\n",
+	       model_names());
 }
 
 /* ---- command line ---------------------------------------------------------------------------------------------------
@@ -250,9 +251,7 @@ static int set_def(struct run *run, const struct options *options)
 	def->memory = run->config.planner.memory;
 	def->now = monotonic;
 	if (options->model && !model_from_name(options->model, &def->model))
-		return cmd_bad_input(
-			"--model: found \"%s\", allowed thesis, simple, simple-elastic, real or real-mathavan",
-			options->model);
+		return cmd_bad_input("--model: found \"%s\", allowed %s", options->model, model_names());
 	if (options->profile) {
 		const struct cost_profile *profile = config_profile(&run->config, options->profile);
 		if (!profile)

@@ -32,20 +32,22 @@ struct run {
 
 static void help(void)
 {
-	puts("usage: billiard simulate [-c CONF] [--model NAME] POSITION.txt [--speed MM_S --angle DEG]\n"
-	     "                         [--side R] [--follow R] [--elevation DEG] [--json] [--plot FILE.svg|.png]\n"
-	     "       billiard simulate --shot SHOT.json\n\n"
-	     "  -c, --config CONF  table, default $BILLIARD_CONF or the installed one\n"
-	     "  --model NAME       thesis, simple, simple-elastic, real, real-mathavan\n"
-	     "  --speed MM_S       of the cue ball after the strike; default: the V line of the position\n"
-	     "  --angle DEG        counter-clockwise from the way to the black cushion\n"
-	     "  --side R           where the tip meets the ball, share of its radius, + left\n"
-	     "  --follow R         the same, + above the middle\n"
-	     "  --elevation DEG    of the cue\n"
-	     "  --json             one JSON object per event\n"
-	     "  --plot FILE        draws the paths\n"
-	     "  --shot SHOT.json   a shot of another simulator; events are printed as JSON in its frame and SI units\n"
-	     "POSITION.txt holds \"ID, TYPE, x, y\" lines in mm (- is standard input).");
+	printf("usage: billiard simulate [-c CONF] [--model NAME] POSITION.txt [--speed MM_S --angle DEG]\n"
+	       "                         [--side R] [--follow R] [--elevation DEG] [--json] [--plot FILE.svg|.png]\n"
+	       "       billiard simulate --shot SHOT.json\n\n"
+	       "  -c, --config CONF  table, default $BILLIARD_CONF or the installed one\n"
+	       "  --model NAME       %s\n"
+	       "  --speed MM_S       of the cue ball after the strike; default: the V line of the position\n"
+	       "  --angle DEG        counter-clockwise from the way to the black cushion\n"
+	       "  --side R           where the tip meets the ball, share of its radius, + left\n"
+	       "  --follow R         the same, + above the middle\n"
+	       "  --elevation DEG    of the cue\n"
+	       "  --json             one JSON object per event\n"
+	       "  --plot FILE        draws the paths\n"
+	       "  --shot SHOT.json   a shot of another simulator; events are printed as JSON in its frame and SI "
+	       "units\n"
+	       "POSITION.txt holds \"ID, TYPE, x, y\" lines in mm (- is standard input).\n",
+	       model_names());
 }
 
 /* ---- command line ------------------------------------------------------------------------------------------------ */
@@ -123,7 +125,7 @@ static int parse(struct options *options, int argc, char **argv)
 	options->position = argv[optind];
 	if (options->has_speed != options->has_angle)
 		return cmd_usage(argv[0], "--speed and --angle belong together");
-	if (hypot(options->side, options->follow) >= 1)
+	if (options->side * options->side + options->follow * options->follow >= 1)
 		return cmd_usage(argv[0], "--side and --follow miss the ball");
 	return CMD_OK;
 }
@@ -160,9 +162,7 @@ static int prepare(struct run *run, const struct options *options)
 		return status;
 	run->model = run->config.model;
 	if (options->model && !model_from_name(options->model, &run->model))
-		return cmd_bad_input(
-			"--model: found \"%s\", allowed thesis, simple, simple-elastic, real or real-mathavan",
-			options->model);
+		return cmd_bad_input("--model: found \"%s\", allowed %s", options->model, model_names());
 	if (position_read(&run->position, &run->config.table, options->position, err, sizeof err) < 0)
 		return cmd_bad_input("%s", err);
 	return set_shot(run, options);

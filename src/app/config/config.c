@@ -40,8 +40,7 @@ static int finish_model(struct config_reader *reader, const config_t *settings, 
 {
 	if (model_from_name(config->model_name, &config->model))
 		return 0;
-	return config_reader_fail(reader, setting_at(settings, "model"), NULL,
-				  "thesis, simple, simple-elastic, real or real-mathavan");
+	return config_reader_fail(reader, setting_at(settings, "model"), NULL, model_names());
 }
 
 static int finish_profile(struct config_reader *reader, const config_t *settings, struct config_file *file)

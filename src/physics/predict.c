@@ -1,16 +1,10 @@
-#include "physics/detect.h"
+#include "physics/predict.h"
 
 #include "physics/motion.h"
 #include "physics/roots.h"
+#include "physics/tolerances.h"
 
-/* Two velocities or accelerations whose difference is below this share of their sizes are equal up to rounding. */
-static const double ROUNDING = 4e-16;
-/* Balls closer than this share of their squared distance touch: rounding of the positions and of a contact's time. */
-static const double TOUCH = 1e-12;
-/* Boxes around paths are widened by this: far above rounding. */
-static const double BOX_SLACK = 1e-9; /* m */
-
-struct motion detect_motion(const struct table *table, const struct ball *ball, double now)
+struct motion predict_motion(const struct table *table, const struct ball *ball, double now)
 {
 	struct motion m = {.begin = now, .straight = true};
 	double duration = motion_phase_end(ball, table, &m.end_kind);
@@ -29,29 +23,40 @@ struct motion detect_motion(const struct table *table, const struct ball *ball, 
 	return m;
 }
 
-/* Entry of the point p + v t + a t^2 / 2 into a disc about the origin, within horizon. */
-static double curved_entry(vec2 p, vec2 v, vec2 a, double gap, double horizon)
+/* The point p + v t + a t^2 / 2 and a disc about the origin. */
+struct approach {
+	vec2 p, v, a;	 /* m, m/s, m/s^2 */
+	double distance; /* m, radius of the disc */
+	double gap;	 /* m^2, p.p - distance^2 */
+	double speeds;	 /* m/s, of the two bodies: what v is rounded by */
+	bool straight;	 /* a is parallel to v */
+};
+
+/* The squared distance from the disc as a polynomial of time. */
+static void distance_polynomial(const struct approach *d, double c[5])
 {
-	const double c[5] = {gap, 2 * vec2_dot(p, v), vec2_norm2(v) + vec2_dot(p, a), vec2_dot(v, a),
-			     0.25 * vec2_norm2(a)};
-	return roots_quartic_entry(c, horizon);
+	c[0] = d->gap;
+	c[1] = 2 * vec2_dot(d->p, d->v);
+	c[2] = vec2_norm2(d->v) + vec2_dot(d->p, d->a);
+	c[3] = vec2_dot(d->v, d->a);
+	c[4] = 0.25 * vec2_norm2(d->a);
 }
 
-/* The same where a is parallel to v, v not zero: a chord of the circle first, then the time along the line.
- * gap = p.p - distance^2 > 0. A sliding ball that turns back within the horizon is a general case: -1. */
-static double straight_entry(vec2 p, vec2 v, vec2 a, double gap, double distance2, double horizon)
+/* Entry where a is parallel to v, v not zero, gap > 0: a chord of the circle first, then the time along the line. A
+ * sliding ball that turns back within the horizon is a general case: -1. */
+static double straight_entry(const struct approach *d, double horizon)
 {
-	double v2 = vec2_norm2(v), pv = vec2_dot(p, v), va = vec2_dot(v, a);
+	double v2 = vec2_norm2(d->v), pv = vec2_dot(d->p, d->v), va = vec2_dot(d->v, d->a);
 	if (va < 0 && v2 + va * horizon < -ROUNDING * v2)
 		return -1;
 	if (pv >= 0)
 		return INFINITY;
-	double cross = vec2_cross(p, v);
-	double half2 = distance2 * v2 - cross * cross;
+	double cross = vec2_cross(d->p, d->v);
+	double half2 = d->distance * d->distance * v2 - cross * cross;
 	if (half2 < 0)
 		return INFINITY;
 	/* in units of v: the first crossing at k, by the root without cancellation */
-	double k = gap / (-pv + sqrt(half2));
+	double k = d->gap / (-pv + sqrt(half2));
 	double disc = 1 + 2 * va / v2 * k;
 	if (disc < 0)
 		return INFINITY;
@@ -60,56 +65,59 @@ static double straight_entry(vec2 p, vec2 v, vec2 a, double gap, double distance
 }
 
 /* Where the approach at a touching start is rounding only, the acceleration decides. */
-static bool settle_touch(vec2 p, vec2 *v, double speeds, double *gap, double distance2)
+static bool settle_touch(struct approach *d)
 {
-	if (*gap > TOUCH * distance2)
+	if (d->gap > TOUCH * (d->distance * d->distance))
 		return false;
-	double pv = vec2_dot(p, *v);
-	if (fabs(pv) > 16 * ROUNDING * speeds * sqrt(distance2))
+	double pv = vec2_dot(d->p, d->v);
+	if (fabs(pv) > 16 * ROUNDING * d->speeds * d->distance)
 		return false;
-	*v = vec2_madd(*v, -pv / vec2_norm2(p), p);
-	*gap = 0;
+	d->v = vec2_madd(d->v, -pv / vec2_norm2(d->p), d->p);
+	d->gap = 0;
 	return true;
 }
 
-static double touching_entry(vec2 p, vec2 v, vec2 a, double horizon)
+static double touching_entry(const struct approach *d, double horizon)
 {
-	double c2 = vec2_norm2(v) + vec2_dot(p, a);
-	if (fabs(c2) <= 64 * ROUNDING * (vec2_norm2(v) + vec2_norm(p) * vec2_norm(a)))
+	double c2 = vec2_norm2(d->v) + vec2_dot(d->p, d->a);
+	if (fabs(c2) <= 64 * ROUNDING * (vec2_norm2(d->v) + vec2_norm(d->p) * vec2_norm(d->a)))
 		c2 = 0;
-	const double c[5] = {0, 0, c2, vec2_dot(v, a), 0.25 * vec2_norm2(a)};
+	const double c[5] = {0, 0, c2, vec2_dot(d->v, d->a), 0.25 * vec2_norm2(d->a)};
 	return roots_quartic_entry(c, horizon);
 }
 
-static double disc_entry(vec2 p, vec2 v, vec2 a, double distance, double horizon, double speeds, bool straight,
-			 struct solve_count *count)
+/* Entry of the point into the disc, within horizon. */
+static double disc_entry(struct approach d, double horizon, struct solve_count *count)
 {
-	double distance2 = distance * distance, gap = vec2_norm2(p) - distance2;
-	if (settle_touch(p, &v, speeds, &gap, distance2)) {
+	if (settle_touch(&d)) {
 		count->quadratic++;
-		return touching_entry(p, v, a, horizon);
+		return touching_entry(&d, horizon);
 	}
-	if (straight && gap > 0) {
-		double t = straight_entry(p, v, a, gap, distance2, horizon);
+	if (d.straight && d.gap > 0) {
+		double t = straight_entry(&d, horizon);
 		if (t >= 0) {
 			count->quadratic++;
 			return t;
 		}
 	}
-	if (a.x == 0 && a.y == 0) {
+	if (d.a.x == 0 && d.a.y == 0) {
 		count->quadratic++;
-		return roots_quadratic_entry(gap, 2 * vec2_dot(p, v), vec2_norm2(v), horizon);
+		return roots_quadratic_entry(d.gap, 2 * vec2_dot(d.p, d.v), vec2_norm2(d.v), horizon);
 	}
+	double c[5];
+	distance_polynomial(&d, c);
 	count->quartic++;
-	return curved_entry(p, v, a, gap, horizon);
+	return roots_quartic_entry(c, horizon);
 }
 
 struct place {
 	vec2 pos, vel;
 };
 
-static inline struct place place_at(const struct ball *ball, const struct motion *m, double now)
+static inline struct place place_at(const struct mover *mover, double now)
 {
+	const struct ball *ball = mover->ball;
+	const struct motion *m = mover->motion;
 	double dt = now - m->begin;
 	if (dt <= 0 || m->reach == 0)
 		return (struct place){ball->pos, ball->vel};
@@ -120,37 +128,42 @@ static inline struct place place_at(const struct ball *ball, const struct motion
 /* Every coefficient is rounded down, so for t >= 0 the rounded distance is never more than the true one: contacts come
  * early, balls never overlap. False for balls closer than the grid can tell, where only the exact way sees who
  * approaches. */
-static bool entry_on_grid(double grid, vec2 p, vec2 v, vec2 a, double gap, double horizon, double *t)
+static bool entry_on_grid(const struct approach *d, double grid, double horizon, double *t)
 {
-	double c[5] = {gap, 2 * vec2_dot(p, v), vec2_norm2(v) + vec2_dot(p, a), vec2_dot(v, a), 0.25 * vec2_norm2(a)};
-	if (gap < grid)
+	double c[5];
+	if (d->gap < grid)
 		return false;
+	distance_polynomial(d, c);
 	for (int i = 0; i < 5; i++)
 		c[i] = floor(c[i] / grid) * grid;
 	*t = roots_quartic_entry(c, horizon);
 	return true;
 }
 
-double detect_pair(const struct table *table, const struct model *model, const struct ball *a, const struct motion *ma,
-		   const struct ball *b, const struct motion *mb, double now, struct solve_count *count)
+double predict_pair(const struct predictor *by, const struct mover *a, const struct mover *b, double now)
 {
-	double distance = 2 * table->ball_radius;
+	const struct motion *ma = a->motion, *mb = b->motion;
+	double distance = 2 * by->table->ball_radius;
 	double reach = distance + ma->reach + mb->reach;
-	vec2 between = vec2_sub(b->pos, a->pos);
+	vec2 between = vec2_sub(b->ball->pos, a->ball->pos);
 	if (vec2_norm2(between) > reach * reach || (ma->reach == 0 && mb->reach == 0)) {
-		count->culled++;
+		by->count->culled++;
 		return INFINITY;
 	}
 	double end = ma->reach == 0 ? mb->end : mb->reach == 0 ? ma->end : fmin(ma->end, mb->end);
-	struct place pa = place_at(a, ma, now), pb = place_at(b, mb, now);
-	bool straight = (ma->reach == 0 && mb->straight) || (mb->reach == 0 && ma->straight);
-	vec2 p = vec2_sub(pb.pos, pa.pos), v = vec2_sub(pb.vel, pa.vel);
-	vec2 acceleration = vec2_sub(mb->acceleration, ma->acceleration);
-	double horizon = fmax(end - now, 0), gap = vec2_norm2(p) - distance * distance, t;
-	if (model->contact_grid > 0 && entry_on_grid(model->contact_grid, p, v, acceleration, gap, horizon, &t))
-		count->quartic++;
+	struct place pa = place_at(a, now), pb = place_at(b, now);
+	struct approach d = {.p = vec2_sub(pb.pos, pa.pos),
+			     .v = vec2_sub(pb.vel, pa.vel),
+			     .a = vec2_sub(mb->acceleration, ma->acceleration),
+			     .distance = distance,
+			     .speeds = ma->speed + mb->speed,
+			     .straight = (ma->reach == 0 && mb->straight) || (mb->reach == 0 && ma->straight)};
+	d.gap = vec2_norm2(d.p) - distance * distance;
+	double horizon = fmax(end - now, 0), grid = by->model->contact_grid, t;
+	if (grid > 0 && entry_on_grid(&d, grid, horizon, &t))
+		by->count->quartic++;
 	else
-		t = disc_entry(p, v, acceleration, distance, horizon, ma->speed + mb->speed, straight, count);
+		t = disc_entry(d, horizon, by->count);
 	return now + t;
 }
 
@@ -161,25 +174,27 @@ struct box {
 };
 
 /* Least and greatest of p + v t + a t^2 / 2 on [0, horizon]. */
-static void extent(double p, double v, double a, double horizon, double *low, double *high)
+struct extent {
+	double low, high;
+};
+
+static struct extent extent_of(double p, double v, double a, double horizon)
 {
 	double end = p + horizon * (v + 0.5 * a * horizon);
-	*low = fmin(p, end);
-	*high = fmax(p, end);
+	struct extent e = {fmin(p, end), fmax(p, end)};
 	if (a != 0 && -v / a > 0 && -v / a < horizon) {
 		double turn = p - 0.5 * v * v / a;
-		*low = fmin(*low, turn);
-		*high = fmax(*high, turn);
+		e.low = fmin(e.low, turn);
+		e.high = fmax(e.high, turn);
 	}
+	return e;
 }
 
 struct path {
-	const struct table *table;
-	const struct model *model;
+	const struct predictor *by;
 	vec2 p, v, a;
 	double speed;
 	bool straight;
-	struct solve_count *count;
 	struct box box; /* around the path up to the horizon or a later time */
 	double horizon; /* s, to the best event so far */
 	double excess;	/* m, by which the best event's contact point lies beyond its cushion */
@@ -189,8 +204,9 @@ struct path {
 
 static void find_box(struct path *path)
 {
-	extent(path->p.x, path->v.x, path->a.x, path->horizon, &path->box.low.x, &path->box.high.x);
-	extent(path->p.y, path->v.y, path->a.y, path->horizon, &path->box.low.y, &path->box.high.y);
+	struct extent x = extent_of(path->p.x, path->v.x, path->a.x, path->horizon);
+	struct extent y = extent_of(path->p.y, path->v.y, path->a.y, path->horizon);
+	path->box = (struct box){{x.low, y.low}, {x.high, y.high}};
 }
 
 /* True when no point of the box is within distance of the line through point, on the side of normal. */
@@ -217,7 +233,7 @@ static void offer(struct path *path, double t, enum event_kind kind, int other, 
 	}
 }
 
-vec2 detect_cushion_normal(const struct cushion *cushion, vec2 pos)
+vec2 predict_cushion_normal(const struct cushion *cushion, vec2 pos)
 {
 	bool behind = vec2_dot(cushion->normal, vec2_sub(pos, cushion->a)) < 0;
 	return cushion->two_sided && behind ? vec2_scale(cushion->normal, -1) : cushion->normal;
@@ -236,7 +252,7 @@ static void sunk_entry(struct path *path, const struct cushion *c, int index, co
 {
 	vec2 rel = vec2_sub(path->p, c->a);
 	double f0 = vec2_dot(rel, c->along), f1 = vec2_dot(path->v, c->along), f2 = 0.5 * vec2_dot(path->a, c->along);
-	double depth_max = path->table->ball_radius;
+	double depth_max = path->by->table->ball_radius;
 	for (int side = 0; side < 2; side++) {
 		double root[2];
 		int n_roots = roots_quadratic(f2, f1, f0 - (side ? c->span : 0), root);
@@ -262,11 +278,11 @@ static double later_entry(const double d[3], double horizon)
 
 static void try_cushion(struct path *path, int index)
 {
-	const struct cushion *c = &path->table->cushion[index];
-	vec2 n = detect_cushion_normal(c, path->p);
-	double radius = path->table->ball_radius;
+	const struct cushion *c = &path->by->table->cushion[index];
+	vec2 n = predict_cushion_normal(c, path->p);
+	double radius = path->by->table->ball_radius;
 	if (box_beyond_line(&path->box, c->a, n, radius + BOX_SLACK)) {
-		path->count->culled++;
+		path->by->count->culled++;
 		return;
 	}
 	double d[3] = {vec2_dot(n, vec2_sub(path->p, c->a)) - radius, vec2_dot(n, path->v), 0.5 * vec2_dot(n, path->a)};
@@ -276,14 +292,14 @@ static void try_cushion(struct path *path, int index)
 		d[1] = 0;
 	if (fabs(d[2]) <= ROUNDING * vec2_norm(path->a))
 		d[2] = 0;
-	bool unbounded = path->model->pocket == POCKET_MODEL_NONE;
+	bool unbounded = path->by->model->pocket == POCKET_MODEL_NONE;
 	bool behind = !unbounded && d[0] < -radius;
 	if (behind && d[2] >= 0) /* only a bent way leads out from behind the line and in again */
 		return;
 	if (d[2] == 0)
-		path->count->linear++;
+		path->by->count->linear++;
 	else
-		path->count->quadratic++;
+		path->by->count->quadratic++;
 	bool beside = behind || (d[0] < 0 && !unbounded && foot_excess(path, c, 0) > 0);
 	double t = beside ? later_entry(d, path->horizon) : roots_quadratic_entry(d[0], d[1], d[2], path->horizon);
 	double excess = t < INFINITY ? foot_excess(path, c, t) : 0;
@@ -296,16 +312,22 @@ static void try_cushion(struct path *path, int index)
 static double try_disc(struct path *path, vec2 centre, double distance)
 {
 	if (box_beyond_disc(&path->box, centre, distance + BOX_SLACK)) {
-		path->count->culled++;
+		path->by->count->culled++;
 		return INFINITY;
 	}
-	return disc_entry(vec2_sub(path->p, centre), path->v, path->a, distance, path->horizon, path->speed,
-			  path->straight, path->count);
+	struct approach d = {.p = vec2_sub(path->p, centre),
+			     .v = path->v,
+			     .a = path->a,
+			     .distance = distance,
+			     .speeds = path->speed,
+			     .straight = path->straight};
+	d.gap = vec2_norm2(d.p) - distance * distance;
+	return disc_entry(d, path->horizon, path->by->count);
 }
 
 static void try_pocket(struct path *path, int index)
 {
-	const struct pocket *pocket = &path->table->pocket[index];
+	const struct pocket *pocket = &path->by->table->pocket[index];
 	double t = 0;
 	if (vec2_norm2(vec2_sub(path->p, pocket->centre)) > pocket->radius * pocket->radius)
 		t = try_disc(path, pocket->centre, pocket->radius);
@@ -321,10 +343,10 @@ static void try_region(struct path *path, const struct table_region *region)
 		try_cushion(path, __builtin_ctz(mask));
 	for (uint32_t mask = region->jaws; mask; mask &= mask - 1) {
 		int i = __builtin_ctz(mask);
-		const struct jaw *jaw = &path->table->jaw[i];
-		if (jaw->radius == 0 && path->model->pocket != POCKET_MODEL_JAWS)
+		const struct jaw *jaw = &path->by->table->jaw[i];
+		if (jaw->radius == 0 && path->by->model->pocket != POCKET_MODEL_JAWS)
 			continue;
-		double t = try_disc(path, jaw->centre, jaw->radius + path->table->ball_radius);
+		double t = try_disc(path, jaw->centre, jaw->radius + path->by->table->ball_radius);
 		if (t < INFINITY)
 			offer(path, t, EVENT_JAW, i, 0);
 	}
@@ -335,18 +357,18 @@ static bool boxes_meet(const struct box *a, const struct table_region *b)
 	return a->low.x <= b->high.x && a->high.x >= b->low.x && a->low.y <= b->high.y && a->high.y >= b->low.y;
 }
 
-struct event detect_own(const struct table *table, const struct model *model, const struct ball *ball, int index,
-			const struct motion *motion, struct solve_count *count)
+struct event predict_own(const struct predictor *by, const struct mover *mover, int index)
 {
+	const struct table *table = by->table;
+	const struct ball *ball = mover->ball;
+	const struct motion *motion = mover->motion;
 	struct path path = {
-		.table = table,
-		.model = model,
+		.by = by,
 		.p = ball->pos,
 		.v = ball->vel,
 		.a = motion->acceleration,
 		.speed = motion->speed,
 		.straight = motion->straight,
-		.count = count,
 		.horizon = motion->end - motion->begin,
 		.excess = 0,
 		.best = {motion->end, motion->end_kind, (int16_t)index, -1},
@@ -359,7 +381,7 @@ struct event detect_own(const struct table *table, const struct model *model, co
 		if (table->cushion[i].main_rail)
 			try_cushion(&path, i);
 	}
-	if (model->pocket == POCKET_MODEL_NONE)
+	if (by->model->pocket == POCKET_MODEL_NONE)
 		return path.best;
 	if (path.best.kind == EVENT_CUSHION)
 		find_box(&path); /* up to the rail only */

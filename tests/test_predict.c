@@ -7,7 +7,7 @@
 #include <stdio.h>
 #include <stdlib.h>
 
-#include "physics/detect.h"
+#include "physics/predict.h"
 #include "physics/motion.h"
 
 struct state {
@@ -135,7 +135,7 @@ START_TEST(contact_times_of_two_balls)
 			continue;
 		aim(&r, &table, &a, &b);
 		pairs++;
-		struct motion ma = detect_motion(&table, &a, 0), mb = detect_motion(&table, &b, 0);
+		struct motion ma = predict_motion(&table, &a, 0), mb = predict_motion(&table, &b, 0);
 		double end = least_end(&ma, &mb), now = random_u64(&r) & 1 ? 0 : random_in(&r, 0, 0.9) * end;
 		if (!isfinite(end))
 			continue;
@@ -144,7 +144,8 @@ START_TEST(contact_times_of_two_balls)
 		distance_polynomial(&sa, &sb, 2 * (long double)table.ball_radius, c);
 		if (c[0] <= 0)
 			continue;
-		double t = detect_pair(&table, &exact, &a, &ma, &b, &mb, now, &count);
+		struct predictor by = {&table, &exact, &count};
+		double t = predict_pair(&by, &(struct mover){&a, &ma}, &(struct mover){&b, &mb}, now);
 		int before = tally.missed + tally.invented;
 		judge(&tally, c, (long double)end - now, t - now);
 		if (tally.missed + tally.invented > before && before < 5)
@@ -176,9 +177,11 @@ START_TEST(contacts_on_a_grid_come_early)
 		if (vec2_dist(a.pos, b.pos) < 2 * table.ball_radius)
 			continue;
 		aim(&r, &table, &a, &b);
-		struct motion ma = detect_motion(&table, &a, 0), mb = detect_motion(&table, &b, 0);
-		double t = detect_pair(&table, &grid, &a, &ma, &b, &mb, 0, &count);
-		ck_assert_double_le(t, detect_pair(&table, &exact, &a, &ma, &b, &mb, 0, &count) + 1e-9);
+		struct motion ma = predict_motion(&table, &a, 0), mb = predict_motion(&table, &b, 0);
+		struct mover one = {&a, &ma}, other_one = {&b, &mb};
+		double t = predict_pair(&(struct predictor){&table, &grid, &count}, &one, &other_one, 0);
+		ck_assert_double_le(t, predict_pair(&(struct predictor){&table, &exact, &count}, &one, &other_one, 0) +
+					       1e-9);
 		if (!isfinite(t))
 			continue;
 		met++;
@@ -203,8 +206,9 @@ START_TEST(cushion_is_met_at_one_radius)
 	int hits = 0;
 	for (int i = 0; i < 20000; i++) {
 		struct ball b = random_ball(&r, &table);
-		struct motion m = detect_motion(&table, &b, 0);
-		struct event e = detect_own(&table, &model, &b, 0, &m, &count);
+		struct motion m = predict_motion(&table, &b, 0);
+		struct predictor by = {&table, &model, &count};
+		struct event e = predict_own(&by, &(struct mover){&b, &m}, 0);
 		for (int k = 0; k <= 50 && isfinite(e.time); k++) {
 			struct ball at = motion_advance(&b, &table, e.time * k / 50);
 			ck_assert_double_le(fabs(at.pos.x), 1 - table.ball_radius + 1e-12);
@@ -240,8 +244,9 @@ START_TEST(easy_cases_cost_no_quartic)
 	const double want_quadratic[] = {0, 0, 1, 1, 1};
 	for (int i = 0; i < 5; i++) {
 		struct solve_count count = {0};
-		struct motion a = detect_motion(&table, pair[i][0], 0), b = detect_motion(&table, pair[i][1], 0);
-		detect_pair(&table, &exact, pair[i][0], &a, pair[i][1], &b, 0, &count);
+		struct motion a = predict_motion(&table, pair[i][0], 0), b = predict_motion(&table, pair[i][1], 0);
+		struct predictor by = {&table, &exact, &count};
+		predict_pair(&by, &(struct mover){pair[i][0], &a}, &(struct mover){pair[i][1], &b}, 0);
 		ck_assert_int_eq((int)count.quartic, 0);
 		ck_assert_int_eq((int)count.quadratic, (int)want_quadratic[i]);
 		ck_assert_int_eq((int)(count.quadratic + count.culled), 1);
@@ -251,8 +256,8 @@ END_TEST
 
 Suite *test_suite(void)
 {
-	Suite *suite = suite_create("detect");
-	TCase *tcase = tcase_create("detect");
+	Suite *suite = suite_create("predict");
+	TCase *tcase = tcase_create("predict");
 	tcase_set_timeout(tcase, 120);
 	tcase_add_test(tcase, contact_times_of_two_balls);
 	tcase_add_test(tcase, contacts_on_a_grid_come_early);

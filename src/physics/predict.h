@@ -1,6 +1,6 @@
 /* When the next contact comes. Pure functions of balls in closed-form motion. */
-#ifndef BILLIARD_PHYSICS_DETECT_H
-#define BILLIARD_PHYSICS_DETECT_H
+#ifndef BILLIARD_PHYSICS_PREDICT_H
+#define BILLIARD_PHYSICS_PREDICT_H
 
 #include "physics/event.h"
 #include "physics/model.h"
@@ -24,20 +24,31 @@ struct motion {
 	bool straight; /* the path is a straight line */
 };
 
+/* A ball, given at motion->begin, and how it goes on from there. */
+struct mover {
+	const struct ball *ball;
+	const struct motion *motion;
+};
+
+/* What every prediction is made with. */
+struct predictor {
+	const struct table *table;
+	const struct model *model;
+	struct solve_count *count; /* counted on */
+};
+
 /* Motion of a ball from now on. */
-struct motion detect_motion(const struct table *table, const struct ball *ball, double now);
+struct motion predict_motion(const struct table *table, const struct ball *ball, double now);
 
 /* Contact time of two balls at or after now (>= both begins), INFINITY if none within their phases. On a contact grid
  * (model->contact_grid) a contact comes early, never late. */
-double detect_pair(const struct table *table, const struct model *model, const struct ball *a, const struct motion *ma,
-		   const struct ball *b, const struct motion *mb, double now, struct solve_count *count);
+double predict_pair(const struct predictor *by, const struct mover *a, const struct mover *b, double now);
 
 /* The first thing that happens to ball number index by itself: end of its phase, cushion, jaw or pocket. Time INFINITY
- * and EVENT_NONE for a ball at rest. The ball is given at motion->begin. */
-struct event detect_own(const struct table *table, const struct model *model, const struct ball *ball, int index,
-			const struct motion *motion, struct solve_count *count);
+ * and EVENT_NONE for a ball at rest. */
+struct event predict_own(const struct predictor *by, const struct mover *mover, int index);
 
 /* Unit normal of a cushion on the ball's side. */
-vec2 detect_cushion_normal(const struct cushion *cushion, vec2 pos);
+vec2 predict_cushion_normal(const struct cushion *cushion, vec2 pos);
 
 #endif
