@@ -127,6 +127,8 @@ START_TEST(test_no_image_at_all)
 	fclose(file);
 	ck_assert_int_eq(image_read(path, &b, err, sizeof(err)), -EBADMSG);
 	ck_assert_int_lt(image_read("/tmp", &b, err, sizeof(err)), 0);
+	ck_assert_int_eq(image_write_png(&(struct image){(uint8_t[3]){0}, 1, 1, 3}, "/dev/full", err, sizeof(err)),
+			 -ENOSPC);
 	ck_assert_int_lt(image_write_png(&(struct image){(uint8_t[3]){0}, 1, 1, 3}, "/nowhere/a.png", err, sizeof(err)),
 			 0);
 	image_buffer_finish(&b);

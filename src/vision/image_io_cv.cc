@@ -196,6 +196,15 @@ try {
 	return vision_fail(-EBADMSG, err, err_size, "%s: %.100s", path, e.what());
 }
 
+static int write_bytes(const char *path, const std::vector<uint8_t> &bytes)
+{
+	FILE *file = fopen(path, "wb");
+	if (!file)
+		return -errno;
+	int rc = fwrite(bytes.data(), 1, bytes.size(), file) == bytes.size() ? 0 : -errno;
+	return fclose(file) == EOF && rc == 0 ? -errno : rc;
+}
+
 int image_encode_jpeg(const struct image *image, int quality, struct byte_buffer *out, char *err, size_t err_size)
 try {
 	cv::Mat mat(image->height, image->width, CV_8UC3, image->data, (size_t)image->stride);
@@ -219,10 +228,13 @@ try {
 int image_write_png(const struct image *image, const char *path, char *err, size_t err_size)
 try {
 	cv::Mat mat(image->height, image->width, CV_8UC3, image->data, (size_t)image->stride);
+	std::vector<uint8_t> bytes;
 	/* Fast rather than small: these are pictures to look at. */
-	if (!cv::imwrite(path, mat, {cv::IMWRITE_PNG_COMPRESSION, 2}))
-		return vision_fail(-EIO, err, err_size, "%s: could not be written", path);
-	return 0;
+	if (!cv::imencode(".png", mat, bytes, {cv::IMWRITE_PNG_COMPRESSION, 2}))
+		return vision_fail(-EIO, err, err_size, "%s: the image could not be encoded", path);
+	/* Not cv::imwrite: it does not notice that the disk is full. */
+	int rc = write_bytes(path, bytes);
+	return rc < 0 ? vision_fail(rc, err, err_size, "%s: %s", path, strerror(-rc)) : 0;
 } catch (const std::exception &e) {
 	return vision_fail(-EIO, err, err_size, "%s: %.100s", path, e.what());
 }

@@ -1,10 +1,11 @@
 #include "app/commands/overlay.h"
 
 #include <cairo.h>
-#include <errno.h>
 #include <math.h>
 #include <stdio.h>
 #include <string.h>
+
+#include "app/light/picture.h"
 
 static const double mm = 1000; /* in a metre */
 
@@ -181,13 +182,8 @@ int overlay_write(const struct overlay *overlay, const char *path, char *err, si
 	cairo_surface_t *surface = surface_from(overlay->frame);
 	cairo_t *cr = cairo_create(surface);
 	draw(cr, overlay);
-	cairo_status_t status = cairo_status(cr);
+	int code = picture_save_png(cr, path, err, err_size);
 	cairo_destroy(cr);
-	if (status == CAIRO_STATUS_SUCCESS)
-		status = cairo_surface_write_to_png(surface, path);
 	cairo_surface_destroy(surface);
-	if (status == CAIRO_STATUS_SUCCESS)
-		return 0;
-	snprintf(err, err_size, "%s: %s", path, cairo_status_to_string(status));
-	return -EIO;
+	return code;
 }

@@ -1,11 +1,11 @@
 #include "app/commands/plot.h"
 
-#include <cairo-svg.h>
 #include <cairo.h>
-#include <errno.h>
 #include <math.h>
 #include <stdio.h>
 #include <string.h>
+
+#include "app/light/picture.h"
 
 static const double px_per_m = 500;
 static const double margin = 0.1;      /* m around the bed */
@@ -98,40 +98,84 @@ static void draw_path(cairo_t *cr, const struct trace *trace, int ball)
 	cairo_stroke(cr);
 }
 
-static void draw(cairo_t *cr, const struct table *table, const struct trace *trace)
+/* True when the trace ends before the balls do: more happened than it holds. */
+static bool is_cut(const struct trace *trace)
 {
-	draw_table(cr, table);
-	for (int i = 0; i < trace->ball_count; i++)
-		draw_ball(cr, &trace->start[i], table->ball_radius, 0.35);
-	for (int i = 0; i < trace->ball_count; i++)
-		draw_path(cr, trace, i);
+	for (int i = 0; i < trace->ball_count; i++) {
+		struct ball end = trace_at(trace, i, trace_end(trace));
+		if (end.phase != BALL_REST && end.phase != BALL_POTTED)
+			return true;
+	}
+	return trace->overflow;
+}
+
+static void draw_cut_note(cairo_t *cr, const struct table *table, const struct trace *trace)
+{
+	char text[80];
+	snprintf(text, sizeof text, "cut after %d events, %.1f s: the balls still move", trace->count, trace_end(trace));
+	cairo_save(cr);
+	cairo_translate(cr, -table->length / 2, -table->width / 2 - margin / 3);
+	cairo_scale(cr, 1, -1); /* the table's y goes up, that of letters down */
+	cairo_move_to(cr, 0, 0);
+	cairo_set_font_size(cr, margin / 2);
+	cairo_set_source_rgb(cr, 0.8, 0, 0);
+	cairo_show_text(cr, text);
+	cairo_restore(cr);
+}
+
+/* Pale where the end of a path is not the end of the way. */
+static void draw_ends(cairo_t *cr, const struct table *table, const struct trace *trace)
+{
+	bool cut = is_cut(trace);
 	for (int i = 0; i < trace->ball_count; i++) {
 		struct ball end = trace_at(trace, i, trace_end(trace));
 		if (end.phase != BALL_POTTED)
-			draw_ball(cr, &end, table->ball_radius, 1);
+			draw_ball(cr, &end, table->ball_radius, cut ? 0.35 : 1);
 	}
+	if (cut)
+		draw_cut_note(cr, table, trace);
+}
+
+struct plot {
+	const struct table *table;
+	const struct trace *trace;
+	double width, height; /* px */
+};
+
+static void draw(cairo_t *cr, const void *context)
+{
+	const struct plot *plot = context;
+	const struct trace *trace = plot->trace;
+	cairo_translate(cr, plot->width / 2, plot->height / 2);
+	cairo_scale(cr, px_per_m, -px_per_m);
+	draw_table(cr, plot->table);
+	for (int i = 0; i < trace->ball_count; i++)
+		if (trace->start[i].phase != BALL_POTTED)
+			draw_ball(cr, &trace->start[i], plot->table->ball_radius, 0.35);
+	for (int i = 0; i < trace->ball_count; i++)
+		if (trace->start[i].phase != BALL_POTTED)
+			draw_path(cr, trace, i);
+	draw_ends(cr, plot->table, trace);
+}
+
+static int save_png(const struct plot *plot, const char *path, char *err, size_t err_size)
+{
+	cairo_surface_t *surface =
+		cairo_image_surface_create(CAIRO_FORMAT_RGB24, (int)plot->width, (int)plot->height);
+	cairo_t *cr = cairo_create(surface);
+	draw(cr, plot);
+	int code = picture_save_png(cr, path, err, err_size);
+	cairo_destroy(cr);
+	cairo_surface_destroy(surface);
+	return code;
 }
 
 int plot_trace(const struct table *table, const struct trace *trace, const char *path, char *err, size_t err_size)
 {
-	double width = (table->length + 2 * margin) * px_per_m, height = (table->width + 2 * margin) * px_per_m;
-	bool svg = ends_in(path, ".svg");
-	cairo_surface_t *surface = svg ? cairo_svg_surface_create(path, width, height)
-				       : cairo_image_surface_create(CAIRO_FORMAT_RGB24, (int)width, (int)height);
-	cairo_t *cr = cairo_create(surface);
-	cairo_translate(cr, width / 2, height / 2);
-	cairo_scale(cr, px_per_m, -px_per_m);
-	draw(cr, table, trace);
-	cairo_status_t status = cairo_status(cr);
-	cairo_destroy(cr);
-	if (status == CAIRO_STATUS_SUCCESS && !svg)
-		status = cairo_surface_write_to_png(surface, path);
-	cairo_surface_finish(surface);
-	if (status == CAIRO_STATUS_SUCCESS)
-		status = cairo_surface_status(surface);
-	cairo_surface_destroy(surface);
-	if (status == CAIRO_STATUS_SUCCESS)
-		return 0;
-	snprintf(err, err_size, "%s: %s", path, cairo_status_to_string(status));
-	return -EIO;
+	struct plot plot = {table, trace, (table->length + 2 * margin) * px_per_m,
+			    (table->width + 2 * margin) * px_per_m};
+	if (!ends_in(path, ".svg"))
+		return save_png(&plot, path, err, err_size);
+	struct picture picture = {plot.width, plot.height, draw, &plot};
+	return picture_save_svg(&picture, path, err, err_size);
 }

@@ -7,6 +7,7 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "app/config/save.h"
 #include "app/config/text_file.h"
 
 enum { FILE_SIZE_MAX = 1 << 20 };
@@ -183,13 +184,14 @@ int colour_file_write(const char *path, const struct colour_model *model, char *
 	json_object_set_new(root, "features", names);
 	json_object_set_new(root, "unknown_distance", json_real(model->unknown_distance));
 	json_object_set_new(root, "classes", classes);
-	errno = 0;
 	/* 17 digits: a file read back gives the same bits, and a symmetric matrix stays symmetric. */
-	int rc = json_dump_file(root, path, JSON_INDENT(1) | JSON_REAL_PRECISION(17));
+	char *text = json_dumps(root, JSON_INDENT(1) | JSON_REAL_PRECISION(17));
 	json_decref(root);
-	if (rc == 0)
-		return 0;
-	rc = errno ? -errno : -ENOMEM;
-	snprintf(err, err_size, "%s: %s", path, strerror(-rc));
+	if (!text) {
+		snprintf(err, err_size, "%s: %s", path, strerror(ENOMEM));
+		return -ENOMEM;
+	}
+	int rc = save_file(path, text, strlen(text), err, err_size);
+	free(text);
 	return rc;
 }

@@ -11,6 +11,7 @@
 #include "app/process/text.h"
 #include "app/process/bus.h"
 #include "app/light/draw.h"
+#include "app/light/picture.h"
 
 /* Names: px_ is a place in the picture, everything else is in table metres. */
 
@@ -300,13 +301,5 @@ const uint32_t *render_pixels(const struct render *render, int *width, int *heig
 
 int render_write_png(struct render *render, const char *path, char *err, size_t err_size)
 {
-	cairo_status_t status = cairo_status(render->cairo);
-	errno = 0;
-	if (status == CAIRO_STATUS_SUCCESS)
-		status = cairo_surface_write_to_png(render->surface, path);
-	if (status == CAIRO_STATUS_SUCCESS)
-		return 0;
-	int code = status == CAIRO_STATUS_NO_MEMORY ? -ENOMEM : errno > 0 ? -errno : -EIO;
-	snprintf(err, err_size, "%s: %s", path, cairo_status_to_string(status));
-	return code;
+	return picture_save_png(render->cairo, path, err, err_size);
 }
