@@ -136,6 +136,13 @@ refused 'nonexistent.png' detect "$folder/nonexistent.png"
 refused 'text.png' detect "$folder/text.png"
 refused 'overlay takes one image' detect --overlay "$folder/o.png" "$folder/plot.png" "$folder/plot.png"
 refused 'dump takes one image' detect --dump "$folder/d" "$folder/plot.png" "$folder/plot.png"
+refused 'o.jpg" does not end in .png' detect --overlay "$folder/o.jpg" "$folder/plot.png"
+cp "$folder/plot.png" "$folder/kept.png"
+refused 'plot.png is the photograph itself' detect --overlay "$folder/plot.png" "$folder/plot.png"
+ln -s plot.png "$folder/link.png"
+refused 'link.png is the photograph itself' detect --overlay "$folder/link.png" "$folder/plot.png"
+cmp -s "$folder/plot.png" "$folder/kept.png"
+result $? "--overlay leaves the photograph alone"
 call detect --json "$folder/text.png" "$folder/plot.png"
 [ "$status" = 2 ]
 result $? "detect: one bad image of two gives status 2"
@@ -145,7 +152,23 @@ works '"rank":1' plan --json --target RED "$folder/pot.txt"
 refused 'whites.txt:3: a second cue ball' plan "$folder/whites.txt"
 refused 'nonexistent: No such file' plan "$folder/nonexistent"
 
+works '"cue":\[-6' plan --json --in-hand --budget-nodes 200 "$folder/no-cue.txt"
+refused 'no white ball' plan "$folder/no-cue.txt"
+# Pictures come before the answer: an answer is that of a command that worked.
+refused '^/nonexistent/a-1-1.svg: No such file' plan --plot /nonexistent/a.svg "$folder/pot.txt"
+works '"plans":' plan --json --plans 2 --plot "$folder/plan.svg" "$folder/pot.txt"
+[ -s "$folder/plan-1-1.svg" ]
+result $? "plan --plot draws each shot"
+
+# What detect prints is a position.
+echo '{"image":"a.png","calibrated":true,"balls":[{"type":"WHITE","x":500,"y":250},{"type":"RED","x":850,"y":425}]}' >"$folder/seen.json"
+works '"target":"RED1"' plan --json "$folder/seen.json"
+
 if [ -w /dev/full ]; then
+	ln -s /dev/full "$folder/full.svg"
+	timeout 60 "$billiard" simulate --plot "$folder/full.svg" "$folder/pot.txt" >"$folder/out" 2>"$folder/err"
+	[ $? = 1 ] && [ ! -s "$folder/out" ] && grep -q 'full.svg: No space left on device' "$folder/err"
+	result $? "a full disk for --plot is an error that says so"
 	timeout 60 "$billiard" simulate --json "$folder/pot.txt" >/dev/full 2>"$folder/err"
 	[ $? = 1 ] && [ "$(wc -l <"$folder/err")" = 1 ]
 	result $? "a full disk is an error"

@@ -224,6 +224,9 @@ static const struct {
 	{"id = 3", "id = 4", "markers.list[3].id: found 4, allowed each id once and below dictionary_count"},
 	{"900.0, 0.0, 960.0", "0.0, 0.0, 960.0", "projector.homography: found a singular matrix"},
 	{"nose_height = 36.61", "nose_height = 79.0", "table: found "},
+	{"black = ( 893.8, 0.0 )", "black = ( 940.6, 0.0 )",
+	 "table.spots.black: found a place off the bed, allowed one within half of length and width"},
+	{"yellow = ( -600.0, 200.0 )", "yellow = ( -600.0, 471.6 )", "table.spots.yellow: found a place off the bed"},
 };
 
 START_TEST(error_names_place_and_range)

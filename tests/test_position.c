@@ -88,6 +88,38 @@ START_TEST(random_positions_come_back)
 }
 END_TEST
 
+/* What `billiard detect --json` prints. */
+START_TEST(seen_balls)
+{
+	ck_assert_msg(parse("{\"image\":\"a.png\",\"calibrated\":true,\"balls\":[{\"type\":\"RED\",\"x\":-565.8,\"y\":1,"
+			    "\"px\":3},{\"type\":\"WHITE\",\"x\":0,\"y\":0},{\"type\":\"RED\",\"x\":100,\"y\":100}]}\n") == 0,
+		      "%s", err);
+	ck_assert_int_eq(position.count, 3);
+	ck_assert_str_eq(position.name[0], "RED1");
+	ck_assert_str_eq(position.name[1], "WHITE1");
+	ck_assert_str_eq(position.name[2], "RED2");
+	ck_assert_double_eq_tol(position.ball[0].pos.x, -0.5658, 1e-15);
+	ck_assert_int_eq(position_cue(&position), 1);
+	ck_assert(!position.has_velocity);
+}
+END_TEST
+
+/* What Windows' editors make of a text: a mark before it, carriage returns. */
+START_TEST(byte_order_mark)
+{
+	char path[] = "/tmp/billiard-position-XXXXXX";
+	static const char text[] = "\xef\xbb\xbfW, WHITE, 1, 2\r\nR, RED, 300, 0\r\n";
+	int fd = mkstemp(path);
+	ck_assert_int_eq(write(fd, text, sizeof text - 1), (ssize_t)sizeof text - 1);
+	close(fd);
+	int code = position_read(&position, &table, path, err, sizeof err);
+	unlink(path);
+	ck_assert_msg(code == 0, "%s", err);
+	ck_assert_str_eq(position.name[0], "W");
+	ck_assert_int_eq(position.count, 2);
+}
+END_TEST
+
 /* ---- what is refused --------------------------------------------------------------------------------------------- */
 
 static const struct {
@@ -96,7 +128,18 @@ static const struct {
 	{"W, WHITE, 0, 0\nX, WHITE, 100, 0\n", "p.txt:2: a second cue ball, X"},
 	{"A, RED, 0, 0\n\nA, RED, 100, 0\n", "p.txt:3: A is there twice"},
 	{"A, PURPLE, 0, 0\n", "p.txt:1: unknown type \"PURPLE\""},
-	{"A, red, 0, 0\n", "p.txt:1: unknown type \"red\""},
+	{"A, red, 0, 0\n", "p.txt:1: unknown type \"red\": in capitals, \"RED\""},
+	{"A; RED; 0; 0\n", "p.txt:1: found ';', fields are parted by commas"},
+	{"A, RED; 0, 0, 0\n", "p.txt:1: found ';', fields are parted by commas"},
+	{"B\xc3\xa4ll, RED, 0, 0\n", "p.txt:1: field 1 holds a character that is not ASCII"},
+	{"{\"balls\":[{\"type\":\"RED\",\"x\":1}]}", "p.txt:1: balls[0]: type, x and y are wanted"},
+	{"{\"balls\":[{\"type\":\"red\",\"x\":1,\"y\":1}]}", "p.txt:1: unknown type \"red\": in capitals"},
+	{"{\"balls\":[{\"type\":\"RED\",\"x\":1e9,\"y\":1}]}", "p.txt:1: balls[0]: not within +-100000 mm"},
+	{"{\"balls\":[]}", "p.txt: no balls"},
+	{"{\"balls\":{}}", "p.txt:1: a list \"balls\" is wanted"},
+	{"{\"balls\":[\n", "p.txt:2: "},
+	{"{\"balls\":[]}\n{\"balls\":[]}\n", "p.txt:2: end of file expected"},
+	{"{\"calibrated\":false,\"reason\":\"no markers\",\"balls\":[]}", "p.txt:1: not calibrated: no markers"},
 	{"A, RED, 0, 0\nB, RED, 50, 0\n", "p.txt:2: B overlaps A"},
 	{"A, RED, 0, 0\nB, RED, 0, 0\n", "p.txt:2: B overlaps A"},
 	{"A, RED, 0, 0\n# off\nB, RED, 950, 0\n", "p.txt:3: B: (950.0, 0.0) mm is not on the bed"},
@@ -153,7 +196,7 @@ END_TEST
 /* Random bytes of the alphabet that matters: never a crash, and what is accepted is a valid position. */
 START_TEST(random_texts)
 {
-	static const char alphabet[] = "AV,,,,RED WHITE0123456789.-+e#\n\n\r\t\x7f\xc3";
+	static const char alphabet[] = "AV,,,,RED WHITE0123456789.-+e#\n\n\r\t\x7f\xc3;{}[]\":";
 	struct random random = random_begin("random_texts");
 	for (int round = 0; round < 100000; round++) {
 		char text[64];
@@ -181,6 +224,8 @@ Suite *test_suite(void)
 	tcase_add_test(good, comments_blanks_and_line_ends);
 	tcase_add_test(good, touching_balls);
 	tcase_add_test(good, random_positions_come_back);
+	tcase_add_test(good, seen_balls);
+	tcase_add_test(good, byte_order_mark);
 	suite_add_tcase(suite, good);
 	TCase *refused = tcase_create("refused");
 	tcase_add_checked_fixture(refused, setup, NULL);

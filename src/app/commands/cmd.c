@@ -22,6 +22,14 @@ int cmd_usage(const char *name, const char *reason)
 	return cmd_bad_input("%s: %s (see %s --help)", name, reason, name);
 }
 
+int cmd_not_written(int code, const char *reason)
+{
+	cmd_bad_input("%s", reason);
+	bool place = code == -ENOENT || code == -ENOTDIR || code == -EISDIR || code == -EACCES || code == -EROFS ||
+		     code == -ENAMETOOLONG || code == -EPERM;
+	return place ? CMD_BAD_INPUT : CMD_FAILED;
+}
+
 int cmd_config(struct config *config, const char *path)
 {
 	char err[CMD_ERROR_SIZE];

@@ -23,6 +23,10 @@ int cmd_bad_input(const char *format, ...) __attribute__((format(printf, 1, 2)))
 /* One line on stderr that ends in "(see NAME --help)". Returns CMD_BAD_INPUT. */
 int cmd_usage(const char *name, const char *reason);
 
+/* A file could not be written: one line on stderr, reason as save_file() gives it. CMD_BAD_INPUT when the place is none
+ * (no such folder, no permission), CMD_FAILED when it was tried (a full disk). */
+int cmd_not_written(int code, const char *reason);
+
 /* Reads a configuration; path NULL: config_default_path(). CMD_OK, or CMD_BAD_INPUT after one line on stderr. */
 int cmd_config(struct config *config, const char *path);
 

@@ -8,6 +8,7 @@
 
 #include "app/commands/cmd.h"
 #include "app/config/colour_file.h"
+#include "app/config/save.h"
 #include "vision/image_io_cv.h"
 
 enum { RACK_REDS = 15, OPENING_BALLS = 22 };
@@ -239,9 +240,13 @@ static int finish(const struct learner *l, const char *path)
 	struct colour_model model;
 	if (l->samples.count == 0)
 		return cmd_bad_input("no ball of known colour in these images");
-	if (colour_learn(l->samples.sample, l->samples.count, &model, err, sizeof err) < 0 ||
-	    colour_file_write(path, &model, err, sizeof err) < 0)
+	if (colour_learn(l->samples.sample, l->samples.count, &model, err, sizeof err) < 0)
 		return cmd_bad_input("%s", err);
+	int code = save_backup(path, err, sizeof err);
+	if (code == 0)
+		code = colour_file_write(path, &model, err, sizeof err);
+	if (code < 0)
+		return cmd_not_written(code, err);
 	printf("%s: learned from %d balls:", path, l->samples.count);
 	for (int k = 0; k < COLOUR_CLASSES; k++)
 		printf(" %s %d", ball_colour_name((enum ball_colour)k), model.class[k].samples);

@@ -38,6 +38,23 @@ static void help(void)
 	     "Images that cannot be read are named on stderr and give status 2; the others are done all the same.");
 }
 
+static bool same_file(const char *a, const char *b)
+{
+	struct stat one, other;
+	return stat(a, &one) == 0 && stat(b, &other) == 0 && one.st_dev == other.st_dev && one.st_ino == other.st_ino;
+}
+
+/* The overlay is a PNG, and not drawn over the photograph. */
+static int check_overlay(const char *overlay, const char *image)
+{
+	size_t n = strlen(overlay);
+	if (n < 5 || strcmp(overlay + n - 4, ".png") != 0)
+		return cmd_bad_input("--overlay: \"%s\" does not end in .png", overlay);
+	if (same_file(overlay, image))
+		return cmd_bad_input("--overlay: %s is the photograph itself", overlay);
+	return CMD_OK;
+}
+
 /* CMD_OK; CMD_BAD_INPUT; -1 when --help has answered. */
 static int parse(struct options *options, int argc, char **argv)
 {
@@ -73,7 +90,7 @@ static int parse(struct options *options, int argc, char **argv)
 		return cmd_usage(argv[0], "--overlay takes one image");
 	if (options->dump && optind != argc - 1)
 		return cmd_usage(argv[0], "--dump takes one image");
-	return CMD_OK;
+	return options->overlay ? check_overlay(options->overlay, argv[optind]) : CMD_OK;
 }
 
 static int prepare(struct detector *detector, const struct options *options)
@@ -191,7 +208,8 @@ static int write_overlay(const struct detector *detector, const char *path)
 				  .result = &detector->result,
 				  .refused = refused,
 				  .refused_count = count < OVERLAY_REFUSED_MAX ? count : OVERLAY_REFUSED_MAX};
-	return overlay_write(&overlay, path, err, sizeof err) < 0 ? cmd_bad_input("%s", err) : CMD_OK;
+	int code = overlay_write(&overlay, path, err, sizeof err);
+	return code < 0 ? cmd_not_written(code, err) : CMD_OK;
 }
 
 static int detect(struct detector *detector, const struct options *options, const char *path)

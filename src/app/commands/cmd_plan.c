@@ -214,12 +214,26 @@ static int or_configured(int option, int configured)
 	return option >= 0 ? option : configured;
 }
 
+/* With the ball in hand it need not lie anywhere: a white ball that is off the table is added. */
+static void add_white_in_hand(struct position *position)
+{
+	if (position_cue(position) >= 0 || position->count == BALL_MAX)
+		return;
+	int i = position->count++;
+	position->ball[i] = ball_at(COLOUR_WHITE, (vec2){0, 0});
+	position->ball[i].phase = BALL_POTTED;
+	for (int n = 0; n == 0 || position_find(position, position->name[i]) != i; n++)
+		snprintf(position->name[i], BALL_NAME_SIZE, "WHITE%d", n);
+}
+
 static int set_request(struct run *run, const struct options *options)
 {
 	char err[CMD_ERROR_SIZE];
 	const struct config_planner *planner = &run->config.planner;
 	struct plan_request *request = &run->request;
 	*request = plan_request_default();
+	if (options->in_hand)
+		add_white_in_hand(&run->position);
 	memcpy(request->ball, run->position.ball, sizeof request->ball);
 	request->ball_count = run->position.count;
 	request->state = rules_state_from_position(request->ball, request->ball_count);
@@ -391,8 +405,9 @@ static int plot_plans(struct run *run, const char *file)
 			plan_shot_replay(&run->config.table, &run->def.model, &run->result.plan[i].shot[s],
 					 run->position.count, &trace);
 			snprintf(path, sizeof path, "%.*s-%d-%d%s", (int)(dot - file), file, i + 1, s + 1, dot);
-			if (plot_trace(&run->config.table, &trace, path, err, sizeof err) < 0)
-				return cmd_bad_input("%s", err);
+			int code = plot_trace(&run->config.table, &trace, path, err, sizeof err);
+			if (code < 0)
+				return cmd_not_written(code, err);
 		}
 	return CMD_OK;
 }
@@ -404,10 +419,11 @@ static int search(struct run *run, const struct options *options)
 	if (planner_run(run->planner, &run->request, NULL, NULL, &run->result, err, sizeof err) < 0)
 		return cmd_bad_input("%s: %s", options->position, err);
 	run->ms = (monotonic(NULL) - begin) * 1000;
-	int status = options->json ? print_json(run) : print_table(run);
-	if (status == CMD_OK && options->plot)
-		status = plot_plans(run, options->plot);
-	return status;
+	/* Pictures first: what is printed then is the answer of a command that worked. */
+	int status = options->plot ? plot_plans(run, options->plot) : CMD_OK;
+	if (status != CMD_OK)
+		return status;
+	return options->json ? print_json(run) : print_table(run);
 }
 
 int cmd_plan(int argc, char **argv)

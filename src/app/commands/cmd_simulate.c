@@ -261,7 +261,7 @@ static int plot(struct run *run, const char *path)
 	char err[CMD_ERROR_SIZE];
 	int code = plot_trace(&run->config.table, &trace, path, err, sizeof err);
 	free(entry);
-	return code < 0 ? cmd_bad_input("%s", err) : CMD_OK;
+	return code < 0 ? cmd_not_written(code, err) : CMD_OK;
 }
 
 static int simulate_shot_file(const char *path)

@@ -19,6 +19,22 @@ static const config_setting_t *setting_at(const config_t *settings, const char *
 	return setting ? setting : config_root_setting(settings);
 }
 
+/* What is set up on a spot must lie on the bed. The balls there are those of the rules, so the names are theirs. */
+static int finish_spots(struct config_reader *reader, const config_t *settings, const struct table *table)
+{
+	static const char *const name[] = {"yellow", "green", "brown", "blue", "pink", "black"};
+	for (int i = 0; i < (int)(sizeof name / sizeof *name); i++) {
+		vec2 spot = table->spot[COLOUR_YELLOW + i];
+		if (fabs(spot.x) <= table->length / 2 && fabs(spot.y) <= table->width / 2)
+			continue;
+		char path[40];
+		snprintf(path, sizeof path, "table.spots.%s", name[i]);
+		return config_reader_fail(reader, setting_at(settings, path), "a place off the bed",
+					  "one within half of length and width");
+	}
+	return 0;
+}
+
 static int finish_table(struct config_reader *reader, const config_t *settings, struct config_file *file)
 {
 	struct table *table = &file->config.table;
@@ -33,7 +49,7 @@ static int finish_table(struct config_reader *reader, const config_t *settings, 
 	char reason[160];
 	if (table_finish(table, reason, sizeof reason) < 0)
 		return config_reader_fail(reader, setting_at(settings, "table"), reason, "a table that fits together");
-	return 0;
+	return finish_spots(reader, settings, table);
 }
 
 static int finish_model(struct config_reader *reader, const config_t *settings, struct config *config)

@@ -1,6 +1,8 @@
 #include "app/config/position.h"
 
+#include <ctype.h>
 #include <errno.h>
+#include <jansson.h>
 #include <math.h>
 #include <stdarg.h>
 #include <stdio.h>
@@ -11,7 +13,7 @@
 
 enum { POSITION_SIZE_MAX = 1 << 16, FIELD_COUNT = 4, FIELD_SIZE = 48 };
 static const double mm = 1000; /* in a metre */
-static const double speed_max_mm_s = 20000;
+static const double speed_max_mm_s = 20000, place_max_mm = 1e5;
 
 struct reader {
 	const struct table *table;
@@ -68,6 +70,17 @@ static bool copy_field(char *out, const char *begin, const char *end)
 	return true;
 }
 
+/* Why a field is none, for those who come from another format. */
+static int refuse_field(struct reader *reader, const char *begin, const char *end, int number)
+{
+	if (memchr(begin, ';', (size_t)(end - begin)))
+		return fail(reader, reader->line, "found ';', fields are parted by commas");
+	for (const char *c = begin; c < end; c++)
+		if ((unsigned char)*c > '~')
+			return fail(reader, reader->line, "field %d holds a character that is not ASCII", number);
+	return fail(reader, reader->line, "field %d is no word or number", number);
+}
+
 /* Splits at commas, up to a '#'. A line without anything has no fields. */
 static int split(struct reader *reader, const char *line, const char *end, struct fields *out)
 {
@@ -85,7 +98,7 @@ static int split(struct reader *reader, const char *line, const char *end, struc
 		if (out->count == FIELD_COUNT)
 			return fail(reader, reader->line, "more than %d fields", FIELD_COUNT);
 		if (!copy_field(out->text[out->count], line, stop))
-			return fail(reader, reader->line, "field %d is no word or number", out->count + 1);
+			return refuse_field(reader, line, stop, out->count + 1);
 		out->count++;
 		if (!comma)
 			return 0;
@@ -129,30 +142,45 @@ static int parse_velocity(struct reader *reader, const struct fields *fields)
 	return code;
 }
 
-static int parse_ball(struct reader *reader, const struct fields *fields)
+static int refuse_type(struct reader *reader, const char *type)
+{
+	char upper[FIELD_SIZE];
+	size_t n = 0;
+	for (; type[n] && n + 1 < sizeof upper; n++)
+		upper[n] = (char)toupper((unsigned char)type[n]);
+	upper[n] = '\0';
+	if (ball_colour_from_name(upper, &(enum ball_colour){COLOUR_UNKNOWN}))
+		return fail(reader, reader->line, "unknown type \"%s\": in capitals, \"%s\"", type, upper);
+	return fail(reader, reader->line, "unknown type \"%.40s\"", type);
+}
+
+static int add_ball(struct reader *reader, const char *id, const char *type, vec2 pos)
 {
 	struct position *position = &reader->position;
-	const char *id = fields->text[0];
 	enum ball_colour colour;
-	if (!id[0] || strlen(id) >= BALL_NAME_SIZE)
-		return fail(reader, reader->line, "an ID has 1 to %d characters", BALL_NAME_SIZE - 1);
-	if (position_find(position, id) >= 0)
-		return fail(reader, reader->line, "%s is there twice", id);
-	if (!ball_colour_from_name(fields->text[1], &colour))
-		return fail(reader, reader->line, "unknown type \"%s\"", fields->text[1]);
+	if (!ball_colour_from_name(type, &colour))
+		return refuse_type(reader, type);
 	if (colour == COLOUR_WHITE && position_cue(position) >= 0)
 		return fail(reader, reader->line, "a second cue ball, %s", id);
 	if (position->count == BALL_MAX)
 		return fail(reader, reader->line, "more than %d balls", BALL_MAX);
-	vec2 pos;
-	int code = parse_point(reader, fields->text[2], fields->text[3], 1e5, "mm", &pos);
-	if (code < 0)
-		return code;
 	int i = position->count++;
 	position->ball[i] = ball_at(colour, pos);
 	memcpy(position->name[i], id, strlen(id) + 1);
 	reader->line_of[i] = reader->line;
 	return 0;
+}
+
+static int parse_ball(struct reader *reader, const struct fields *fields)
+{
+	const char *id = fields->text[0];
+	if (!id[0] || strlen(id) >= BALL_NAME_SIZE)
+		return fail(reader, reader->line, "an ID has 1 to %d characters", BALL_NAME_SIZE - 1);
+	if (position_find(&reader->position, id) >= 0)
+		return fail(reader, reader->line, "%s is there twice", id);
+	vec2 pos;
+	int code = parse_point(reader, fields->text[2], fields->text[3], place_max_mm, "mm", &pos);
+	return code < 0 ? code : add_ball(reader, id, fields->text[1], pos);
 }
 
 static int parse_line(struct reader *reader, const char *line, const char *end)
@@ -163,9 +191,59 @@ static int parse_line(struct reader *reader, const char *line, const char *end)
 		return code;
 	if (strcmp(fields.text[0], "V") == 0 && fields.count == 3)
 		return parse_velocity(reader, &fields);
+	if (fields.count != FIELD_COUNT && memchr(line, ';', (size_t)(end - line)))
+		return fail(reader, reader->line, "found ';', fields are parted by commas");
 	if (fields.count != FIELD_COUNT)
 		return fail(reader, reader->line, "found %d fields, wanted ID, TYPE, x, y or V, vx, vy", fields.count);
 	return parse_ball(reader, &fields);
+}
+
+/* ---- what `billiard detect --json` prints ------------------------------------------------------------------------- */
+
+/* RED3: the third of its colour. */
+static int add_seen(struct reader *reader, const json_t *item, size_t number, int seen[COLOUR_COUNT])
+{
+	const char *type = json_string_value(json_object_get(item, "type"));
+	const json_t *x = json_object_get(item, "x"), *y = json_object_get(item, "y");
+	if (!type || !json_is_number(x) || !json_is_number(y))
+		return fail(reader, reader->line, "balls[%zu]: type, x and y are wanted", number);
+	vec2 pos = {json_number_value(x), json_number_value(y)};
+	if (!(fabs(pos.x) <= place_max_mm && fabs(pos.y) <= place_max_mm))
+		return fail(reader, reader->line, "balls[%zu]: not within +-%g mm", number, place_max_mm);
+	enum ball_colour colour;
+	char id[BALL_NAME_SIZE] = "";
+	if (ball_colour_from_name(type, &colour))
+		snprintf(id, sizeof id, "%s%d", ball_colour_name(colour), ++seen[colour]);
+	return add_ball(reader, id, type, vec2_scale(pos, 1 / mm));
+}
+
+static int parse_seen(struct reader *reader, const json_t *object)
+{
+	const json_t *balls = json_object_get(object, "balls"), *item;
+	const char *reason = json_string_value(json_object_get(object, "reason"));
+	int seen[COLOUR_COUNT] = {0}, code = 0;
+	size_t i;
+	if (json_is_false(json_object_get(object, "calibrated")))
+		return fail(reader, reader->line, "not calibrated: %s", reason ? reason : "no reason");
+	if (!json_is_array(balls))
+		return fail(reader, reader->line, "a list \"balls\" is wanted");
+	json_array_foreach((json_t *)balls, i, item)
+	{
+		if ((code = add_seen(reader, item, i, seen)) < 0)
+			break;
+	}
+	return code;
+}
+
+/* One line of one image. */
+static int parse_json(struct reader *reader, const char *text, size_t size)
+{
+	json_error_t error;
+	json_t *root = json_loadb(text, size, JSON_REJECT_DUPLICATES, &error);
+	reader->line = 1;
+	int code = root ? parse_seen(reader, root) : fail(reader, error.line, "%s", error.text);
+	json_decref(root);
+	return code;
 }
 
 /* ---- the whole --------------------------------------------------------------------------------------------------- */
@@ -189,21 +267,35 @@ static int check(struct reader *reader)
 	return fail(reader, reader->line_of[first], "%s: %s", position->name[first], reason);
 }
 
-int position_parse(struct position *out, const struct table *table, const char *name, const char *text, size_t size,
-		   char *err, size_t err_size)
+static int parse_lines(struct reader *reader, const char *text, const char *end)
 {
-	struct reader reader = {.table = table, .name = name, .err = err, .err_size = err_size};
-	const char *end = text + size;
 	while (text < end) {
 		const char *newline = memchr(text, '\n', (size_t)(end - text));
 		const char *stop = newline ? newline : end;
-		reader.line++;
-		int code = parse_line(&reader, text, stop);
+		reader->line++;
+		int code = parse_line(reader, text, stop);
 		if (code < 0)
 			return code;
 		text = newline ? newline + 1 : end;
 	}
-	int code = check(&reader);
+	return 0;
+}
+
+static bool is_json(const char *text, const char *end)
+{
+	while (text < end && (is_blank(*text) || *text == '\n'))
+		text++;
+	return text < end && *text == '{';
+}
+
+int position_parse(struct position *out, const struct table *table, const char *name, const char *text, size_t size,
+		   char *err, size_t err_size)
+{
+	struct reader reader = {.table = table, .name = name, .err = err, .err_size = err_size};
+	int code = is_json(text, text + size) ? parse_json(&reader, text, size)
+					      : parse_lines(&reader, text, text + size);
+	if (code == 0)
+		code = check(&reader);
 	if (code == 0)
 		*out = reader.position;
 	return code;

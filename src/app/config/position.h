@@ -1,5 +1,5 @@
 /* Position text of thesis 4.8: one ball a line "ID, TYPE, x, y" in mm, '#' comments, an optional "V, vx, vy" line in
- * mm/s for the cue ball. */
+ * mm/s for the cue ball; or one line of `billiard detect --json`, whose balls are named RED1, RED2, ... */
 #ifndef BILLIARD_APP_POSITION_H
 #define BILLIARD_APP_POSITION_H
 

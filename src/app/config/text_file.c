@@ -24,7 +24,10 @@ static int read_all(FILE *file, const char *path, size_t max, char *text, size_t
 	if (n > max)
 		return fail(path, "is too long", -EFBIG, err, err_size);
 	if (memchr(text, 0, n))
-		return fail(path, "is not a text", -EBADMSG, err, err_size);
+		return fail(path, "is not a text (UTF-8 is wanted)", -EBADMSG, err, err_size);
+	/* Some editors put a mark before UTF-8. */
+	if (n >= 3 && memcmp(text, "\xef\xbb\xbf", 3) == 0)
+		memmove(text, text + 3, n -= 3);
 	text[n] = 0;
 	*size = n;
 	return 0;

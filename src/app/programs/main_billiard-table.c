@@ -217,8 +217,13 @@ static int set_balls(struct virtual_process *p, const char *path, char *err, siz
 			return -EINVAL;
 		}
 	} else {
+		char reason[160];
 		player_rack(&c->table, position.ball);
 		position.count = BALL_MAX;
+		if (table_check_balls(&c->table, position.ball, BALL_MAX, &(int){0}, &(int){0}, reason, sizeof reason) < 0) {
+			snprintf(err, err_size, "%.100s: table.spots: no opening position: %.100s", c->path, reason);
+			return -EINVAL;
+		}
 	}
 	player_init(p->table, &c->table, &c->model, &c->virtual_table, c->infinity.rules, position.ball,
 		    position.count);
