@@ -21,7 +21,7 @@ PHYSICS := ball collide contact contact_ball_real contact_mathavan contact_stron
 	roots sim table trace
 SEARCH := candidate cost crew figures frontier geometry plan play pool rank refine request respot \
 	rules safety scheme share_queue share_steal share_windows shot solutions step tolerance
-VISION := calibration camera colour detect fit linear marker_edges outline pose reason scan seeds stabilise stages track vision
+VISION := calibration camera colour detect fit linear marker_edges outline pose reason scan scan_changes scan_cloth scan_copy scan_marks scan_place seeds stabilise stages track vision
 VISION_CV := capture_cv image_io_cv markers_cv marker_image_cv
 # app: what the programs share, room by room
 APP_PROCESS := ball_message bus clock frame_source process supervisor text

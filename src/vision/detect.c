@@ -135,10 +135,10 @@ static void add(struct detector *d, const struct candidate *c)
 		d->candidate[d->count++] = *c;
 }
 
-static void look_at(const struct detector *d, const struct image *frame, struct candidate *c)
+static void look_at(const struct detector *d, struct candidate *c)
 {
 	scan_cloth_at(&d->scan, c->fit.outline.centre, c->fit.cloth);
-	c->look = colour_measure(frame, &c->fit.outline, c->fit.cloth);
+	c->look = colour_measure(d->view.frame, &c->fit.outline, c->fit.cloth);
 }
 
 /* A ball that is known lies there: no need to find it again. */
@@ -150,34 +150,34 @@ static bool is_known(const struct detector *d, vec2 pos)
 	return false;
 }
 
-static void try_place(struct detector *d, const struct fit_view *view, vec2 px, double support)
+static void try_place(struct detector *d, vec2 px, double support)
 {
 	struct candidate c = {
 		.fit = {.scale = USUAL_SCALE, .expected_scale = USUAL_SCALE, .scale_spread = USUAL_SPREAD},
 		.cover = 1,
 		.tag = -1,
 	};
-	if (!camera_unproject(view->camera, px, view->radius, &c.fit.pos) || is_known(d, c.fit.pos))
+	if (!camera_unproject(d->view.camera, px, d->view.radius, &c.fit.pos) || is_known(d, c.fit.pos))
 		return;
 	scan_cloth_at(&d->scan, px, c.fit.cloth);
-	bool fitted = fit_refine(view, &c.fit, 2);
+	bool fitted = fit_refine(&d->view, &c.fit, 2);
 	if (!fitted || c.fit.support < support)
 		refuse(d, &c, REFUSED_FIT);
 	else if (!detect_possible(d->table, c.fit.pos))
 		refuse(d, &c, REFUSED_PLACE);
 	else {
 		look_around(d, &c, false);
-		look_at(d, view->frame, &c);
+		look_at(d, &c);
 		add(d, &c);
 	}
 }
 
-static void know_neighbours(const struct detector *d, struct fit_view *view, struct fit other[DETECT_MAX])
+/* As they are now: a fit that moves does not move what hides the others. */
+static void know_neighbours(struct detector *d)
 {
 	for (int i = 0; i < d->count; i++)
-		other[i] = d->candidate[i].fit;
-	view->other = other;
-	view->other_count = d->count;
+		d->neighbour[i] = d->candidate[i].fit;
+	d->view.other_count = d->count;
 }
 
 static bool is_vacant(const struct detector *d, vec2 pos)
@@ -189,11 +189,10 @@ static bool is_vacant(const struct detector *d, vec2 pos)
 }
 
 /* Balls inside a pack show little rim to vote with: one may touch any two that touch each other. */
-static void try_packed(struct detector *d, struct fit_view *view)
+static void try_packed(struct detector *d)
 {
-	struct fit other[DETECT_MAX];
 	double diameter = 2 * d->table->ball_radius;
-	know_neighbours(d, view, other);
+	know_neighbours(d);
 	for (int i = 0; i < d->count; i++)
 		for (int j = 0; j < i; j++) {
 			vec2 a = d->candidate[i].fit.pos, way = vec2_sub(d->candidate[j].fit.pos, a), px;
@@ -201,12 +200,12 @@ static void try_packed(struct detector *d, struct fit_view *view)
 				continue;
 			for (int side = -1; side <= 1; side += 2) {
 				vec2 pos = vec2_madd(vec2_madd(a, 0.5, way), side * 0.8660254, vec2_perp(way));
-				if (is_vacant(d, pos) && camera_project(view->camera, pos, view->radius, &px) &&
+				if (is_vacant(d, pos) && camera_project(d->view.camera, pos, d->view.radius, &px) &&
 				    cover_at(d, px, 0.8) > PACK_COVER)
-					try_place(d, view, px, SUPPORT_PACKED);
+					try_place(d, px, SUPPORT_PACKED);
 			}
 		}
-	view->other_count = 0;
+	d->view.other_count = 0;
 }
 
 /* Lit or shaded, but cloth all the same: the projector draws circles as large as balls. */
@@ -286,17 +285,16 @@ static void find_alone(struct detector *d)
 }
 
 /* Fits all again, each knowing its neighbours. Those without any need it only once. */
-static void fit_together(struct detector *d, struct fit_view *view)
+static void fit_together(struct detector *d)
 {
-	struct fit other[DETECT_MAX];
-	know_neighbours(d, view, other);
+	know_neighbours(d);
 	for (int i = 0; i < d->count; i++) {
 		struct candidate *c = &d->candidate[i];
 		c->judged = c->judged && c->alone;
-		if (!c->fixed && !c->judged && !fit_refine(view, &c->fit, c->alone ? 1 : 2))
+		if (!c->fixed && !c->judged && !fit_refine(&d->view, &c->fit, c->alone ? 1 : 2))
 			c->refusal = REFUSED_FIT;
 	}
-	view->other_count = 0;
+	d->view.other_count = 0;
 }
 
 static void drop_refused(struct detector *d)
@@ -354,14 +352,14 @@ static void push_apart(struct detector *d, int sweeps)
 }
 
 /* relief: how much less rim than usual is enough. */
-static void judge_all(struct detector *d, const struct image *frame, double relief)
+static void judge_all(struct detector *d, double relief)
 {
 	for (int i = 0; i < d->count; i++) {
 		struct candidate *c = &d->candidate[i];
 		if (c->fixed || c->judged)
 			continue;
 		look_around(d, c, true);
-		look_at(d, frame, c);
+		look_at(d, c);
 		c->refusal = judge(d, c, c->alone ? 0 : relief);
 		c->confidence = c->fit.support * c->cover;
 		c->judged = c->alone;
@@ -369,8 +367,18 @@ static void judge_all(struct detector *d, const struct image *frame, double reli
 	drop_refused(d);
 }
 
+/* Outlines where the balls were pushed to. */
+static void draw_outlines(struct detector *d)
+{
+	for (int i = 0; i < d->count; i++) {
+		struct fit *fit = &d->candidate[i].fit;
+		if (!d->candidate[i].fixed)
+			outline_of_ball(d->view.camera, fit->pos, d->view.radius, fit->scale, &fit->outline);
+	}
+}
+
 /* Rounds of fitting, since every ball's hidden rim depends on its neighbours; then judgement. */
-static void settle(struct detector *d, struct fit_view *view)
+static void settle(struct detector *d)
 {
 	static const char *const round_name[ROUNDS] = {"round-1", "round-2", "round-3"};
 	bool all_fixed = true;
@@ -383,31 +391,24 @@ static void settle(struct detector *d, struct fit_view *view)
 			push_apart(d, 4);
 		expect_scales(d);
 		find_alone(d);
-		fit_together(d, view);
+		fit_together(d);
 		refuse_overlaps(d);
 		drop_refused(d);
 		/* What is no ball must neither hide nor push one; in the first round rims are still badly known. */
-		judge_all(d, view->frame, round == 0 ? SUPPORT_ROUGH : 0);
-		stage_fits(d->watch, round_name[round], d, view);
+		judge_all(d, round == 0 ? SUPPORT_ROUGH : 0);
+		stage_fits(d->watch, round_name[round], d);
 		if (round + 1 < ROUNDS)
-			try_packed(d, view);
+			try_packed(d);
 	}
 	push_apart(d, 20);
-	for (int i = 0; i < d->count; i++) {
-		struct fit *fit = &d->candidate[i].fit;
-		if (!d->candidate[i].fixed)
-			outline_of_ball(view->camera, fit->pos, view->radius, fit->scale, &fit->outline);
-	}
+	draw_outlines(d);
 }
 
-static struct fit_view view_of(const struct detector *d, const struct image *frame, const struct camera *camera)
-{
-	return (struct fit_view){.frame = frame, .camera = camera, .radius = d->table->ball_radius};
-}
-
-void detector_begin(struct detector *d)
+void detector_begin(struct detector *d, const struct image *frame, const struct camera *camera)
 {
 	d->count = d->refused_count = 0;
+	d->view = (struct fit_view){
+		.frame = frame, .camera = camera, .radius = d->table->ball_radius, .other = d->neighbour};
 }
 
 void detector_keep(struct detector *d, const struct candidate *known, int tag)
@@ -420,19 +421,18 @@ void detector_keep(struct detector *d, const struct candidate *known, int tag)
 	d->candidate[d->count++].tag = tag;
 }
 
-bool detector_follow(struct detector *d, const struct image *frame, const struct camera *camera,
-		     const struct candidate *known, vec2 pos, int tag)
+bool detector_follow(struct detector *d, const struct candidate *known, vec2 pos, int tag)
 {
 	struct candidate c = *known;
-	struct fit other[DETECT_MAX];
-	struct fit_view view = view_of(d, frame, camera);
 	c.fixed = c.judged = false;
 	c.refusal = REFUSED_NOT;
 	c.tag = tag;
 	c.fit.pos = pos;
-	know_neighbours(d, &view, other);
-	if (d->count == DETECT_MAX || !fit_refine(&view, &c.fit, 2) || c.fit.support < SUPPORT_SEED ||
-	    !detect_possible(d->table, c.fit.pos) || !is_vacant(d, c.fit.pos))
+	know_neighbours(d);
+	bool fitted = d->count < DETECT_MAX && fit_refine(&d->view, &c.fit, 2);
+	d->view.other_count = 0;
+	if (!fitted || c.fit.support < SUPPORT_SEED || !detect_possible(d->table, c.fit.pos) ||
+	    !is_vacant(d, c.fit.pos))
 		return false;
 	look_around(d, &c, false);
 	if (c.cover < COVER_MIN)
@@ -441,22 +441,22 @@ bool detector_follow(struct detector *d, const struct image *frame, const struct
 	return true;
 }
 
-void detector_search(struct detector *d, const struct image *frame, const struct camera *camera, const uint8_t *active)
+void detector_search(struct detector *d, const uint8_t *active)
 {
-	struct fit_view view = view_of(d, frame, camera);
 	seeds_find(&d->seeds, &d->scan, active);
-	stage_seeds(d->watch, frame, &d->scan, &d->seeds);
-	view.coarse = true;
+	stage_seeds(d->watch, d->view.frame, &d->scan, &d->seeds);
+	d->view.coarse = true;
 	for (int i = 0; i < d->seeds.count; i++)
-		try_place(d, &view, d->seeds.seed[i].px, SUPPORT_SEED);
-	stage_fits(d->watch, "fits", d, &view);
+		try_place(d, d->seeds.seed[i].px, SUPPORT_SEED);
+	stage_fits(d->watch, "fits", d);
+	d->view.coarse = false;
 }
 
-void detector_settle(struct detector *d, const struct image *frame, const struct camera *camera)
+void detector_settle(struct detector *d)
 {
-	struct fit_view view = view_of(d, frame, camera);
-	settle(d, &view);
-	stage_fits(d->watch, "balls", d, &view);
+	settle(d);
+	stage_fits(d->watch, "balls", d);
+	d->view = (struct fit_view){0};
 }
 
 double detector_cover(const struct detector *d, vec2 px)
@@ -466,11 +466,11 @@ double detector_cover(const struct detector *d, vec2 px)
 
 bool detector_frame(struct detector *d, const struct image *frame, const struct camera *camera)
 {
-	detector_begin(d);
+	detector_begin(d, frame, camera);
 	if (!scan_frame(&d->scan, frame))
 		return false;
 	stage_scan(d->watch, frame, &d->scan);
-	detector_search(d, frame, camera, d->scan.changed);
-	detector_settle(d, frame, camera);
+	detector_search(d, d->scan.changed);
+	detector_settle(d);
 	return true;
 }

@@ -32,6 +32,8 @@ struct detector {
 	const struct stage_watch *watch;	 /* borrowed; NULL: nobody looks */
 	struct scan scan;
 	struct seeds seeds;
+	struct fit_view view; /* frame and camera from begin to settle */
+	struct fit neighbour[DETECT_MAX];
 	int count;
 	struct candidate candidate[DETECT_MAX]; /* accepted ones */
 	int refused_count;
@@ -48,15 +50,15 @@ bool detector_place(struct detector *d, const struct camera *camera);
 bool detector_frame(struct detector *d, const struct image *frame, const struct camera *camera);
 
 /* The same in steps, for a tracked table whose scan is up to date: begin; put in what is known; look for more in the
- * active cells; settle. Candidates that are known carry the caller's tag. */
-void detector_begin(struct detector *d);
+ * active cells; settle. Candidates that are known carry the caller's tag. frame and camera are borrowed until settle. */
+void detector_begin(struct detector *d, const struct image *frame, const struct camera *camera);
 /* A ball that did not change. */
 void detector_keep(struct detector *d, const struct candidate *known, int tag);
 /* A ball to be fitted again, near pos; scale and look are taken from known. False when it is not there. */
-bool detector_follow(struct detector *d, const struct image *frame, const struct camera *camera,
-		     const struct candidate *known, vec2 pos, int tag);
-void detector_search(struct detector *d, const struct image *frame, const struct camera *camera, const uint8_t *active);
-void detector_settle(struct detector *d, const struct image *frame, const struct camera *camera);
+bool detector_follow(struct detector *d, const struct candidate *known, vec2 pos, int tag);
+/* active: one byte a cell of the scan; NULL: all. */
+void detector_search(struct detector *d, const uint8_t *active);
+void detector_settle(struct detector *d);
 /* Share of small pixels that are not cloth around a full pixel, within 0.8 of a usual ball's radius. */
 double detector_cover(const struct detector *d, vec2 px);
 

@@ -32,6 +32,7 @@ struct scan {
 	uint16_t *foreign;    /* per cell: pixels that are not cloth */
 	uint16_t *half;	      /* per cell: pixels that may not be; behind foreign */
 	uint16_t *difference; /* per cell: mean absolute difference, 1/16 level */
+	int relearn_row;      /* of cells: the next to be learned again */
 };
 
 /* Room for frames of up to width x height at factor 1. 0 or -ENOMEM. */
@@ -39,7 +40,7 @@ int scan_init(struct scan *scan, int width, int height);
 void scan_finish(struct scan *scan);
 
 /* Where the bed lies in the frame and how much smaller the copy is: call whenever the pose or the frame's size changes.
- * False when the bed is not in the picture. */
+ * False, and everything stays as it was, when the bed is not in the picture. */
 bool scan_place(struct scan *scan, const struct camera *camera, const struct table *table);
 /* Copies, learns the cloth, marks. False when nothing like an even cloth is seen (black, overexposed...). */
 bool scan_frame(struct scan *scan, const struct image *frame);
@@ -48,8 +49,8 @@ bool scan_frame(struct scan *scan, const struct image *frame);
 int scan_changes(struct scan *scan, const struct image *frame);
 /* Marks the changed cells anew. */
 void scan_update(struct scan *scan);
-/* Learns the cloth of one row of cells again: light drifts. */
-void scan_relearn(struct scan *scan, int cell_row);
+/* Learns the cloth of the next row of cells again: light drifts. */
+void scan_relearn(struct scan *scan);
 /* Cloth colour, BGR, at a full pixel. */
 void scan_cloth_at(const struct scan *scan, vec2 px, float out[3]);
 /* Full pixel of a small pixel's middle, and the reverse. */

@@ -192,15 +192,14 @@ static void draw_fit(struct image *out, const struct fit_view *view, const struc
 		dot(out, rim[i].px, colour[rim[i].state]);
 }
 
-void stage_fits(const struct stage_watch *watch, const char *name, const struct detector *detector,
-		const struct fit_view *view)
+void stage_fits(const struct stage_watch *watch, const char *name, const struct detector *detector)
 {
 	struct image out;
-	struct fit_view fine = *view;
+	struct fit_view fine = detector->view;
 	struct fit fit[DETECT_MAX];
 	if (!watch)
 		return;
-	bool room = begin_frame(&out, view->frame);
+	bool room = begin_frame(&out, fine.frame);
 	for (int i = 0; i < detector->count; i++)
 		fit[i] = detector->candidate[i].fit;
 	fine.other = fit;

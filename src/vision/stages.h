@@ -14,7 +14,6 @@ struct stage_watch {
 
 struct calibration;
 struct detector;
-struct fit_view;
 struct scan;
 struct seeds;
 struct table;
@@ -32,7 +31,6 @@ void stage_seeds(const struct stage_watch *watch, const struct image *frame, con
 		 const struct seeds *seeds);
 /* Fits as they are now: outlines (green), and along them the edges that hold them (white), the edges in creases
  * (yellow), where no edge is (red), what a neighbour hides (blue); refused ones so far (magenta crosses). */
-void stage_fits(const struct stage_watch *watch, const char *name, const struct detector *detector,
-		const struct fit_view *view);
+void stage_fits(const struct stage_watch *watch, const char *name, const struct detector *detector);
 
 #endif

@@ -186,12 +186,12 @@ static bool needs_fit(const struct tracker *t, const struct track *k)
 }
 
 /* A moving ball is looked for where it should be, then where it was. */
-static bool follow(struct tracker *t, const struct image *frame, const struct camera *camera, int i)
+static bool follow(struct tracker *t, int i)
 {
 	const struct track *k = &t->track[i];
-	if (k->steady.moving && detector_follow(t->detector, frame, camera, &k->seen, predicted(k, t->time), i))
+	if (k->steady.moving && detector_follow(t->detector, &k->seen, predicted(k, t->time), i))
 		return true;
-	return detector_follow(t->detector, frame, camera, &k->seen, k->steady.pos, i);
+	return detector_follow(t->detector, &k->seen, k->steady.pos, i);
 }
 
 void tracker_step(struct tracker *t, const struct image *frame, const struct camera *camera, double time)
@@ -200,7 +200,7 @@ void tracker_step(struct tracker *t, const struct image *frame, const struct cam
 	t->time = time;
 	t->frame++;
 	t->fitted = 0;
-	detector_begin(t->detector);
+	detector_begin(t->detector, frame, camera);
 	/* What rests comes first: the others are fitted around it. */
 	for (int i = 0; i < TRACK_MAX; i++) {
 		fit[i] = t->track[i].id != 0 && needs_fit(t, &t->track[i]);
@@ -208,8 +208,8 @@ void tracker_step(struct tracker *t, const struct image *frame, const struct cam
 			detector_keep(t->detector, &t->track[i].seen, i);
 	}
 	for (int i = 0; i < TRACK_MAX; i++)
-		t->fitted += fit[i] && follow(t, frame, camera, i);
-	detector_search(t->detector, frame, camera, t->detector->scan.changed);
-	detector_settle(t->detector, frame, camera);
+		t->fitted += fit[i] && follow(t, i);
+	detector_search(t->detector, t->detector->scan.changed);
+	detector_settle(t->detector);
 	take_over(t, false);
 }

@@ -26,7 +26,6 @@ struct vision {
 	bool tracking;	   /* the detector's scan is that of the stream's last frame */
 	int width, height; /* px of the stream */
 	double time;
-	int relearn_row;
 };
 
 struct vision_def vision_def_default(void)
@@ -309,7 +308,7 @@ static void step_changes(struct vision *v, const struct image *frame, double tim
 	struct scan *s = &v->detector.scan;
 	scan_update(s);
 	tracker_step(&v->tracker, frame, &r->camera, time);
-	scan_relearn(s, v->relearn_row++ % s->cells_y);
+	scan_relearn(s);
 	report_tracks(v, r);
 }
 
