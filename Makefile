@@ -21,7 +21,7 @@ PHYSICS := ball collide contact contact_ball_real contact_mathavan contact_stron
 	roots sim table trace
 SEARCH := candidate cost crew figures frontier geometry plan play pool rank refine request respot \
 	rules safety scheme share_queue share_steal share_windows shot solutions step tolerance
-VISION := calibration camera colour detect fit linear marker_edges outline pose reason scan scan_changes scan_cloth scan_copy scan_marks scan_place seeds stabilise stages track vision
+VISION := calibration camera colour detector fit linear marker_edges outline pose reason scan scan_changes scan_cloth scan_copy scan_marks scan_place seeds stabilise stages track vision
 VISION_CV := capture_cv image_io_cv markers_cv marker_image_cv
 # app: what the programs share, room by room
 APP_PROCESS := ball_message bus clock frame_source process supervisor text
@@ -41,7 +41,7 @@ TESTS := signature fsm stability plan_message controller planner_service planner
 	config position save cmd plot draw render player table_camera contact_real contact_recorded shot_file \
 	rules cost geometry frontier pool scheme candidate plan plan_thesis plan_hard plan_complete tolerance refine solutions request \
 	ball contact predict event inverse model motion queue roots sim sim_hard table trace \
-	camera pose scan fit colour stabilise image_io capture stages track vision vision_photos
+	calibration camera pose scan fit colour stabilise image_io capture stages track vision vision_photos
 TEST_SHARED := harness brute_force bus_fixture service_fixture planner_client random poly_judge scenes search_scenes shot_compare thesis_lists vision_rig vision_scene
 # tests that are scripts: tests/NAME.sh, called with the build folder
 TEST_SCRIPTS := cli demo planner units

@@ -10,7 +10,7 @@
 #include "hough_cv.h"
 #include "vision/calibration.h"
 #include "vision/capture_cv.h"
-#include "vision/detect.h"
+#include "vision/detector.h"
 #include "vision_eval.h"
 
 static const double mm = 1000, FOUND = 0.015, ms = 1000;

@@ -142,6 +142,7 @@ END_TEST
 START_TEST(test_places_that_are_none)
 {
 	struct camera away = camera;
+	struct scan before = scan;
 	away.pose.t[0] += 5;
 	ck_assert(!scan_place(&scan, &away, &table));
 	away = camera;
@@ -151,6 +152,11 @@ START_TEST(test_places_that_are_none)
 	away = camera;
 	away.pose.t[2] += 20;
 	ck_assert(!scan_place(&scan, &away, &table));
+	/* Larger than life, and nearly out of the picture. */
+	away = camera;
+	away.in.cx += 1150;
+	ck_assert(!scan_place(&scan, &away, &table));
+	ck_assert_msg(memcmp(&scan, &before, sizeof(scan)) == 0, "half updated");
 	/* Any size of frame fits into the same memory. */
 	for (int width = 640; width <= 7680; width *= 2) {
 		struct camera other = camera;
@@ -158,6 +164,40 @@ START_TEST(test_places_that_are_none)
 		ck_assert(scan_place(&scan, &other, &table));
 		ck_assert_int_le(scan.width * scan.height, scan.capacity);
 	}
+}
+END_TEST
+
+/* Light that grows slowly is followed everywhere, round by round, for ever. */
+START_TEST(test_every_row_is_learned_again)
+{
+	struct random r = random_begin("scan_relearn");
+	scene_paint(&camera, &table, NULL, 0, 2, &r, &image);
+	ck_assert(scan_frame(&scan, &image.image));
+	float before[3], after[3];
+	vec2 px;
+	for (int round = 0; round < 3; round++) {
+		for (ptrdiff_t i = 0; i < 720 * image.image.stride; i++)
+			image.image.data[i] = (uint8_t)fmin(255, 1.1 * image.image.data[i]);
+		ck_assert(camera_project(&camera, (vec2){0.5, -0.3}, 0, &px));
+		scan_cloth_at(&scan, px, before);
+		for (int row = 0; row < scan.cells_y; row++) {
+			scan_changes(&scan, &image.image);
+			scan_relearn(&scan);
+			ck_assert(scan.relearn_row >= 0 && scan.relearn_row <= scan.cells_y);
+		}
+		scan_cloth_at(&scan, px, after);
+		ck_assert_float_eq_tol(after[1] / before[1], 1.1f, 0.02f);
+	}
+	/* A place with fewer rows begins somewhere in it. */
+	struct camera small = camera;
+	ck_assert(camera_scale(&camera.in, 640, 360, &small.in));
+	scan.relearn_row = scan.cells_y;
+	ck_assert(scan_place(&scan, &small, &table));
+	ck_assert_int_eq(image_buffer_reserve(&image, 640, 360), 0);
+	scene_paint(&small, &table, NULL, 0, 2, &r, &image);
+	ck_assert(scan_frame(&scan, &image.image));
+	scan_relearn(&scan);
+	ck_assert_int_le(scan.relearn_row, scan.cells_y);
 }
 END_TEST
 
@@ -171,6 +211,7 @@ Suite *test_suite(void)
 	tcase_add_test(tc, test_only_what_changed);
 	tcase_add_test(tc, test_no_cloth_no_scan);
 	tcase_add_test(tc, test_places_that_are_none);
+	tcase_add_test(tc, test_every_row_is_learned_again);
 	tcase_set_timeout(tc, 60);
 	suite_add_tcase(suite, tc);
 	return suite;

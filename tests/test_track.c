@@ -28,8 +28,8 @@ static void alone_setup(void)
 /* look: the features are that far from another ball's. */
 static void find(vec2 pos, double look)
 {
-	struct candidate *c = &detector.candidate[detector.count++];
-	*c = (struct candidate){.tag = -1, .cover = 1, .confidence = 1};
+	struct sighting *c = &detector.candidate[detector.count++];
+	*c = (struct sighting){.tag = -1, .cover = 1, .confidence = 1};
 	c->fit.pos = pos;
 	c->fit.support = 1;
 	c->fit.outline.radius_px = 15.5;
@@ -154,6 +154,33 @@ START_TEST(test_jumping_finds_are_no_ball)
 		find((vec2){0.8, -0.4}, 0);
 		step(i * dt);
 		ck_assert_int_eq(id_at((vec2){0.8, -0.4}) > 0, i >= 202);
+	}
+}
+END_TEST
+
+/* However large balls are in the picture: what trembles by the usual part of a pixel rests, what goes on by more than
+ * three times that does not. */
+START_TEST(test_rest_is_measured_in_pixels)
+{
+	struct random r = random_begin("track_rest");
+	static const double radius_px[] = {7.75, 15.5, 31};
+	for (int i = 0; i < 3; i++) {
+		double metres_per_px = table.ball_radius / radius_px[i];
+		alone_setup();
+		for (int k = 0; k < 300; k++) {
+			double off = 0.08 * metres_per_px;
+			find((vec2){0.1 + off * scene_gauss(&r), 0.1 + off * scene_gauss(&r)}, 0);
+			detector.candidate[0].fit.outline.radius_px = radius_px[i];
+			step(k * dt);
+			ck_assert_msg(!track_at((vec2){0.1, 0.1})->steady.moving, "radius %g px, frame %d",
+				      radius_px[i], k);
+		}
+		for (int k = 0; k < 3; k++) {
+			find((vec2){0.1 + 0.5 * metres_per_px, 0.1}, 0);
+			detector.candidate[0].fit.outline.radius_px = radius_px[i];
+			step((300 + k) * dt);
+		}
+		ck_assert_double_gt(track_at((vec2){0.1, 0.1})->steady.pos.x, 0.1 + 0.4 * metres_per_px);
 	}
 }
 END_TEST
@@ -446,6 +473,7 @@ Suite *test_suite(void)
 	tcase_add_test(tc, test_look_tells_balls_apart);
 	tcase_add_test(tc, test_lost_ball_is_kept_four_frames);
 	tcase_add_test(tc, test_jumping_finds_are_no_ball);
+	tcase_add_test(tc, test_rest_is_measured_in_pixels);
 	tcase_add_test(tc, test_more_than_there_is_room_for);
 	suite_add_tcase(suite, tc);
 	tc = tcase_create("streams");

@@ -129,6 +129,30 @@ START_TEST(test_frames_that_show_nothing)
 }
 END_TEST
 
+/* Markers are seen, balls cannot be: not calibrated, with the reason; and a reason only then. */
+START_TEST(test_a_reason_means_not_calibrated)
+{
+	static const int grey[] = {5, 255};
+	char err[256];
+	rig->count = 0;
+	for (int i = 0; i < 3; i++) {
+		rig_paint(0);
+		/* The bed between the markers' rails. */
+		for (int y = 100; y < 620 && i < 2; y++)
+			memset(rig->image.image.data + y * rig->image.image.stride, grey[i], 3 * 1280);
+		for (int stream = 0; stream < 2; stream++) {
+			int r = stream ? vision_track(rig->vision, &rig->image.image, i, &rig->result, err, sizeof(err))
+				       : vision_detect(rig->vision, &rig->image.image, &rig->result, err, sizeof(err));
+			ck_assert_int_eq(r, 0);
+			ck_assert_int_ge(rig->result.markers_seen, 3);
+			ck_assert_int_eq(rig->result.ball_count, 0);
+			ck_assert_int_eq(rig->result.calibration == CALIBRATION_NONE, i < 2);
+			ck_assert_int_eq(rig->result.reason[0] != '\0', i < 2);
+		}
+	}
+}
+END_TEST
+
 START_TEST(test_wrong_sizes_are_refused)
 {
 	static const int size[][2] = {{1, 1}, {640, 480}, {1280, 1024}, {720, 1280}, {8000, 720}};
@@ -267,6 +291,7 @@ Suite *test_suite(void)
 	tcase_add_test(tc, test_same_frame_same_bits);
 	tcase_add_test(tc, test_empty_table_has_no_balls);
 	tcase_add_test(tc, test_frames_that_show_nothing);
+	tcase_add_test(tc, test_a_reason_means_not_calibrated);
 	tcase_add_test(tc, test_wrong_sizes_are_refused);
 	tcase_add_test(tc, test_bad_definitions_are_refused);
 	tcase_set_timeout(tc, 120);

@@ -4,6 +4,8 @@
 #include <stdio.h>
 #include <string.h>
 
+#include "physics/vec2.h"
+#include "vision/camera.h"
 #include "vision/marker_edges.h"
 
 enum { AVERAGED_MAX = 50, FULL_SEARCH_EVERY = 5 };
@@ -25,7 +27,7 @@ void calibration_finish(struct calibration *c)
 void calibration_reset(struct calibration *c)
 {
 	c->valid = false;
-	c->seen_count = c->averaged = c->now_count = c->partial = 0;
+	c->seen_count = c->now_count = c->partial = 0;
 }
 
 /* Markers that do not belong to the layout are somebody else's; the others' corners are refined. */
@@ -61,6 +63,14 @@ static bool find_pose(struct calibration *c, const struct marker_view *view, int
 	return false;
 }
 
+static void begin_average(struct calibration *c, const struct marker_view *view, int count)
+{
+	memcpy(c->seen, view, sizeof(*view) * (size_t)count);
+	c->seen_count = count;
+	for (int i = 0; i < count; i++)
+		c->averaged[i] = 1;
+}
+
 bool calibration_single(struct calibration *c, const struct image *frame, const struct camera_intrinsics *in,
 			char *reason, size_t reason_size)
 {
@@ -70,56 +80,88 @@ bool calibration_single(struct calibration *c, const struct image *frame, const 
 	c->now_count = count;
 	if (!find_pose(c, view, count, in, reason, reason_size))
 		return false;
-	memcpy(c->seen, view, sizeof(*view) * (size_t)count);
-	c->seen_count = count;
-	c->averaged = 1;
+	begin_average(c, view, count);
 	return true;
 }
 
-static struct marker_view *known_view(struct calibration *c, int id)
+/* Index of a marker among those averaged, -1 when it has not been seen yet. */
+static int known_marker(const struct calibration *c, int id)
 {
 	for (int i = 0; i < c->seen_count; i++)
 		if (c->seen[i].id == id)
-			return &c->seen[i];
-	return NULL;
+			return i;
+	return -1;
 }
 
 /* Largest distance of a marker's middle from where it was, px. */
-static double moved_px(struct calibration *c, const struct marker_view *view, int count)
+static double moved_px(const struct calibration *c, const struct marker_view *view, int count)
 {
 	double most = 0;
 	for (int i = 0; i < count; i++) {
-		const struct marker_view *old = known_view(c, view[i].id);
+		int at = known_marker(c, view[i].id);
 		double dx = 0, dy = 0;
-		for (int k = 0; k < 4 && old; k++) {
-			dx += (view[i].x[k] - old->x[k]) / 4;
-			dy += (view[i].y[k] - old->y[k]) / 4;
+		for (int k = 0; k < 4 && at >= 0; k++) {
+			dx += (view[i].x[k] - c->seen[at].x[k]) / 4;
+			dy += (view[i].y[k] - c->seen[at].y[k]) / 4;
 		}
 		most = fmax(most, hypot(dx, dy));
 	}
 	return most;
 }
 
+/* Each marker by the frames that it was seen in: one that comes late is as noisy as the others were. */
 static void average(struct calibration *c, const struct marker_view *view, int count)
 {
-	if (c->averaged < AVERAGED_MAX)
-		c->averaged++;
 	for (int i = 0; i < count; i++) {
-		struct marker_view *old = known_view(c, view[i].id);
-		if (!old && c->seen_count < MARKER_MAX) {
-			c->seen[c->seen_count++] = view[i];
+		int at = known_marker(c, view[i].id);
+		if (at < 0 && c->seen_count < MARKER_MAX) {
+			at = c->seen_count++;
+			c->seen[at] = view[i];
+			c->averaged[at] = 1;
 			continue;
 		}
-		for (int k = 0; k < 4 && old; k++) {
-			old->x[k] += (view[i].x[k] - old->x[k]) / c->averaged;
-			old->y[k] += (view[i].y[k] - old->y[k]) / c->averaged;
+		if (at < 0)
+			continue;
+		struct marker_view *mean = &c->seen[at];
+		c->averaged[at] += c->averaged[at] < AVERAGED_MAX;
+		for (int k = 0; k < 4; k++) {
+			mean->x[k] += (view[i].x[k] - mean->x[k]) / c->averaged[at];
+			mean->y[k] += (view[i].y[k] - mean->y[k]) / c->averaged[at];
 		}
 	}
 }
 
+/* Where a marker that has not been seen yet must be by the pose. */
+static bool expected_view(const struct calibration *c, int i, struct marker_view *out)
+{
+	static const double sx[4] = {-1, 1, 1, -1}, sy[4] = {1, 1, -1, -1};
+	double half = c->layout->side / 2;
+	out->id = c->layout->marker[i].id;
+	for (int k = 0; k < 4; k++) {
+		vec2 px, corner = {half * sx[k], half * sy[k]};
+		if (!camera_project(&c->camera, vec2_add(c->layout->marker[i].centre, corner), c->layout->height, &px))
+			return false;
+		out->x[k] = px.x;
+		out->y[k] = px.y;
+	}
+	return true;
+}
+
+/* Places to look at: where markers were, then where those are that were covered all the time. */
+static int places(const struct calibration *c, struct marker_view out[MARKER_MAX])
+{
+	int count = c->seen_count;
+	memcpy(out, c->seen, sizeof(*out) * (size_t)count);
+	for (int i = 0; i < c->layout->count && count < MARKER_MAX; i++)
+		if (known_marker(c, c->layout->marker[i].id) < 0 && expected_view(c, i, &out[count]))
+			count++;
+	return count;
+}
+
 static int search(struct calibration *c, const struct image *frame, struct marker_view view[MARKER_MAX])
 {
-	int count = marker_find_near(c->finder, frame, c->seen, c->seen_count, view, MARKER_MAX);
+	struct marker_view near[MARKER_MAX];
+	int count = marker_find_near(c->finder, frame, near, places(c, near), view, MARKER_MAX);
 	count = keep_known(c->layout, frame, view, count);
 	c->partial = count < c->seen_count ? c->partial + 1 : 0;
 	/* Not where they were: covered, or the camera looks elsewhere. The whole frame is dear, so not every time. */
@@ -161,9 +203,7 @@ enum calibration_news calibration_track(struct calibration *c, const struct imag
 		return without(c, time, reason, reason_size);
 	c->found = time;
 	if (moved_px(c, view, count) > BUMP_PX * in->width / 1280) {
-		memcpy(c->seen, view, sizeof(*view) * (size_t)count);
-		c->seen_count = count;
-		c->averaged = 1;
+		begin_average(c, view, count);
 		return find_pose(c, view, count, in, reason, reason_size) ? CALIBRATION_MOVED
 									  : without(c, time, reason, reason_size);
 	}

@@ -13,7 +13,8 @@ struct calibration {
 	struct camera camera;
 	struct pose_fit fit;
 	struct marker_view seen[MARKER_MAX]; /* averaged corners, in order of id */
-	int seen_count, averaged;	     /* markers; frames in the average */
+	int averaged[MARKER_MAX];	     /* frames in each one's average */
+	int seen_count;			     /* markers */
 	int now_count;			     /* markers of the last search */
 	double searched, found;		     /* s: times of the last search and of the last pose */
 	int partial;			     /* searches in a row that found less than before */

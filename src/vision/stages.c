@@ -6,7 +6,7 @@
 
 #include "physics/table.h"
 #include "vision/calibration.h"
-#include "vision/detect.h"
+#include "vision/detector.h"
 
 struct colour {
 	uint8_t b, g, r;

@@ -10,8 +10,8 @@ enum {
 	TURN = 8,	      /* of resting balls, every TURN-th is fitted again in each frame */
 	LOOKS_MAX = 40
 };
-static const double NOISE_PX = 0.12;				/* a resting ball trembles by, at 15.5 px radius */
-static const double FASTEST = 9;				/* m/s; no ball is faster */
+static const double NOISE_PX = 0.12; /* a resting ball trembles by, whatever its size in the picture */
+static const double FASTEST = 9;     /* m/s; no ball is faster */
 static const double CONFIRM_SUPPORT = 0.78, CONFIRM_BEND = 0.3; /* radii */
 static const double LOOK_DISTANCE = 1.2;			/* features further apart are another ball's */
 static const double COVERED_SHARE = 0.35;
@@ -47,10 +47,9 @@ static bool moves_like_a_ball(const struct tracker *t, const struct track *k)
 	       vec2_norm(bend) < CONFIRM_BEND * t->detector->table->ball_radius;
 }
 
-static void update(struct tracker *t, struct track *k, const struct candidate *c)
+static void update(struct tracker *t, struct track *k, const struct sighting *c)
 {
-	double metres_per_px = t->detector->table->ball_radius / c->fit.outline.radius_px;
-	double noise = NOISE_PX * c->fit.outline.radius_px / 15.5 * metres_per_px;
+	double noise = NOISE_PX * t->detector->table->ball_radius / c->fit.outline.radius_px;
 	k->age++;
 	k->misses = 0;
 	k->seen_time = t->time;
@@ -62,7 +61,7 @@ static void update(struct tracker *t, struct track *k, const struct candidate *c
 	k->confirmed = k->confirmed || (k->age >= CONFIRM_FRAMES && moves_like_a_ball(t, k));
 }
 
-static void start(struct tracker *t, const struct candidate *c, bool confirmed)
+static void start(struct tracker *t, const struct sighting *c, bool confirmed)
 {
 	for (int i = 0; i < TRACK_MAX; i++) {
 		struct track *k = &t->track[i];
@@ -98,7 +97,7 @@ static vec2 predicted(const struct track *k, double time)
 }
 
 /* How badly a new candidate fits a track that was not found where it was; infinite when it cannot be it. */
-static double mismatch(const struct tracker *t, const struct track *k, const struct candidate *c)
+static double mismatch(const struct tracker *t, const struct track *k, const struct sighting *c)
 {
 	double reach = 2 * t->detector->table->ball_radius;
 	/* What is not yet known to be a ball has no claim to things far away. */

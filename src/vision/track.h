@@ -2,7 +2,7 @@
 #ifndef BILLIARD_VISION_TRACK_H
 #define BILLIARD_VISION_TRACK_H
 
-#include "vision/detect.h"
+#include "vision/detector.h"
 #include "vision/stabilise.h"
 
 enum { TRACK_MAX = 40 };
@@ -13,7 +13,7 @@ struct track {
 	int misses;	       /* frames in a row without it */
 	double seen_time;      /* s */
 	bool confirmed;	       /* seen often enough to be reported */
-	struct candidate seen; /* its last fit */
+	struct sighting seen; /* its last fit */
 	struct stabiliser steady;
 	struct colour_feature look; /* averaged */
 	int looks;

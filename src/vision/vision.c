@@ -8,7 +8,7 @@
 
 #include "vision/calibration.h"
 #include "vision/colour.h"
-#include "vision/detect.h"
+#include "vision/detector.h"
 #include "vision/reason.h"
 #include "vision/track.h"
 
@@ -134,7 +134,7 @@ int vision_refusals(const struct vision *vision, struct vision_refusal *out, int
 	};
 	const struct detector *d = &vision->detector;
 	for (int i = 0; i < d->refused_count && i < capacity; i++) {
-		const struct candidate *c = &d->refused[i];
+		const struct sighting *c = &d->refused[i];
 		out[i] = (struct vision_refusal){c->fit.pos, c->fit.support, c->cover, reason[c->refusal]};
 	}
 	return d->refused_count;
@@ -164,7 +164,7 @@ static void assign_colours(const struct vision *v, const struct colour_feature *
 		out->ball[i].colour = verdict[i].colour;
 }
 
-static struct vision_ball ball_of(const struct candidate *c)
+static struct vision_ball ball_of(const struct sighting *c)
 {
 	return (struct vision_ball){.pos = c->fit.pos,
 				    .px = c->fit.outline.centre,
@@ -216,13 +216,22 @@ static int check_frame(const struct vision *v, const struct image *frame, struct
 			   frame->width, frame->height, v->def.intrinsics.width, v->def.intrinsics.height);
 }
 
-static bool place(struct vision *v, struct vision_result *r)
+/* Why the balls of a calibrated frame are not known after all. */
+static bool fail_frame(struct vision_result *r, const char *why)
 {
-	if (detector_place(&v->detector, &r->camera))
-		return true;
 	r->calibration = CALIBRATION_NONE;
-	snprintf(r->reason, sizeof(r->reason), "the table is not in the picture");
+	snprintf(r->reason, sizeof(r->reason), "%s", why);
 	return false;
+}
+
+/* The frame as a whole into the detector. */
+static bool search_whole(struct vision *v, const struct image *frame, struct vision_result *r)
+{
+	if (!detector_place(&v->detector, &r->camera))
+		return fail_frame(r, "the table is not in the picture");
+	if (!detector_frame(&v->detector, frame, &r->camera))
+		return fail_frame(r, "no cloth is seen: too dark or too bright");
+	return true;
 }
 
 static void report_single(const struct vision *v, struct vision_result *r)
@@ -252,10 +261,8 @@ int vision_detect(struct vision *vision, const struct image *frame, struct visio
 	stage_markers(vision->detector.watch, frame, &vision->single, vision->def.table);
 	if (placed) {
 		report_calibration(&vision->single, &r);
-		if (place(vision, &r) && detector_frame(&vision->detector, frame, &r.camera))
+		if (search_whole(vision, frame, &r))
 			report_single(vision, &r);
-		else if (r.calibration != CALIBRATION_NONE)
-			snprintf(r.reason, sizeof(r.reason), "no cloth is seen: too dark or too bright");
 	} else {
 		r.markers_seen = vision->single.now_count;
 	}
@@ -292,12 +299,8 @@ static void report_tracks(const struct vision *v, struct vision_result *r)
 static void step_whole(struct vision *v, const struct image *frame, double time, struct vision_result *r)
 {
 	v->tracking = false;
-	if (!place(v, r))
+	if (!search_whole(v, frame, r))
 		return;
-	if (!detector_frame(&v->detector, frame, &r->camera)) {
-		snprintf(r->reason, sizeof(r->reason), "no cloth is seen: too dark or too bright");
-		return;
-	}
 	tracker_restart(&v->tracker, time);
 	v->tracking = true;
 	report_tracks(v, r);
@@ -332,6 +335,8 @@ int vision_track(struct vision *vision, const struct image *frame, double time, 
 		r.markers_seen = vision->stream.now_count;
 		vision->tracking = false;
 	} else {
+		/* What became of a search does not matter while a pose holds. */
+		r.reason[0] = '\0';
 		report_calibration(&vision->stream, &r);
 		r.pose_age = time - vision->stream.found;
 		if (news == CALIBRATION_MOVED || !vision->tracking)

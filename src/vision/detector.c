@@ -1,4 +1,4 @@
-#include "vision/detect.h"
+#include "vision/detector.h"
 
 #include <math.h>
 #include <string.h>
@@ -76,7 +76,7 @@ static double cover_at(const struct detector *d, vec2 px, double reach)
 }
 
 /* Shares of marked small pixels inside of 0.8 outlines, and between 1.2 and 1.5 of them where no other ball is. */
-static void look_around(struct detector *d, struct candidate *c, bool ring)
+static void look_around(struct detector *d, struct sighting *c, bool ring)
 {
 	const struct scan *s = &d->scan;
 	vec2 mid = scan_from_full(s, c->fit.outline.centre);
@@ -104,7 +104,7 @@ static void look_around(struct detector *d, struct candidate *c, bool ring)
 	c->ring = out > 0 ? (double)foreign / out : 0;
 }
 
-static void refuse(struct detector *d, const struct candidate *c, enum refusal why)
+static void refuse(struct detector *d, const struct sighting *c, enum refusal why)
 {
 	if (d->refused_count == SEED_MAX)
 		return;
@@ -112,13 +112,13 @@ static void refuse(struct detector *d, const struct candidate *c, enum refusal w
 	d->refused[d->refused_count++].refusal = why;
 }
 
-static double worth(const struct candidate *c)
+static double worth(const struct sighting *c)
 {
 	return c->fit.support * c->cover * sqrt(c->fit.contrast);
 }
 
 /* Adds a candidate unless a better one of the same place is there; a worse one gives way. */
-static void add(struct detector *d, const struct candidate *c)
+static void add(struct detector *d, const struct sighting *c)
 {
 	double apart = DOUBLE_DISTANCE * 2 * d->table->ball_radius;
 	for (int i = 0; i < d->count; i++) {
@@ -135,7 +135,7 @@ static void add(struct detector *d, const struct candidate *c)
 		d->candidate[d->count++] = *c;
 }
 
-static void look_at(const struct detector *d, struct candidate *c)
+static void look_at(const struct detector *d, struct sighting *c)
 {
 	scan_cloth_at(&d->scan, c->fit.outline.centre, c->fit.cloth);
 	c->look = colour_measure(d->view.frame, &c->fit.outline, c->fit.cloth);
@@ -152,7 +152,7 @@ static bool is_known(const struct detector *d, vec2 pos)
 
 static void try_place(struct detector *d, vec2 px, double support)
 {
-	struct candidate c = {
+	struct sighting c = {
 		.fit = {.scale = USUAL_SCALE, .expected_scale = USUAL_SCALE, .scale_spread = USUAL_SPREAD},
 		.cover = 1,
 		.tag = -1,
@@ -209,7 +209,7 @@ static void try_packed(struct detector *d)
 }
 
 /* Lit or shaded, but cloth all the same: the projector draws circles as large as balls. */
-static bool looks_like_cloth(const struct candidate *c)
+static bool looks_like_cloth(const struct sighting *c)
 {
 	const struct colour_feature *look = &c->look;
 	double mean = (look->v[0] + look->v[1] + look->v[2]) / 3, off = 0;
@@ -220,7 +220,7 @@ static bool looks_like_cloth(const struct candidate *c)
 	return off < bar && mean > CLOTH_DARK && mean < CLOTH_LIGHT;
 }
 
-static enum refusal judge(const struct detector *d, const struct candidate *c, double relief)
+static enum refusal judge(const struct detector *d, const struct sighting *c, double relief)
 {
 	if (!detect_possible(d->table, c->fit.pos))
 		return REFUSED_PLACE;
@@ -233,7 +233,7 @@ static enum refusal judge(const struct detector *d, const struct candidate *c, d
 	return REFUSED_NOT;
 }
 
-static bool is_clear(const struct candidate *c)
+static bool is_clear(const struct sighting *c)
 {
 	return c->fit.rays >= OUTLINE_POINTS * 3 / 4 && c->fit.support > 0.9;
 }
@@ -244,7 +244,7 @@ static int scale_of_like(const struct detector *d, int i, const enum ball_colour
 	double like[DETECT_MAX];
 	int n = 0;
 	for (int j = 0; j < d->count; j++) {
-		const struct candidate *o = &d->candidate[j];
+		const struct sighting *o = &d->candidate[j];
 		if (!is_clear(o) || class[j] != class[i] ||
 		    colour_difference(&d->candidate[i].look, &o->look) > LIKE_DISTANCE)
 			continue;
@@ -289,7 +289,7 @@ static void fit_together(struct detector *d)
 {
 	know_neighbours(d);
 	for (int i = 0; i < d->count; i++) {
-		struct candidate *c = &d->candidate[i];
+		struct sighting *c = &d->candidate[i];
 		c->judged = c->judged && c->alone;
 		if (!c->fixed && !c->judged && !fit_refine(&d->view, &c->fit, c->alone ? 1 : 2))
 			c->refusal = REFUSED_FIT;
@@ -315,7 +315,7 @@ static void refuse_overlaps(struct detector *d)
 	double apart = OVERLAP_DISTANCE * 2 * d->table->ball_radius;
 	for (int i = 0; i < d->count; i++)
 		for (int j = 0; j < i; j++) {
-			struct candidate *a = &d->candidate[i], *b = &d->candidate[j];
+			struct sighting *a = &d->candidate[i], *b = &d->candidate[j];
 			if (a->refusal != REFUSED_NOT || b->refusal != REFUSED_NOT ||
 			    vec2_dist(a->fit.pos, b->fit.pos) > apart)
 				continue;
@@ -327,7 +327,7 @@ static void refuse_overlaps(struct detector *d)
 static const double FIXED_FIRMNESS = 1e6; /* others give way to what has not moved */
 
 /* How firmly a fit stands: edges that hold it. */
-static double firmness(const struct candidate *c)
+static double firmness(const struct sighting *c)
 {
 	return c->fixed ? FIXED_FIRMNESS : c->fit.rays * c->fit.support * fmin(1, c->fit.contrast / 60) + 1;
 }
@@ -339,7 +339,7 @@ static void push_apart(struct detector *d, int sweeps)
 	for (int s = 0; s < sweeps; s++)
 		for (int i = 0; i < d->count; i++)
 			for (int j = 0; j < i; j++) {
-				struct candidate *a = &d->candidate[i], *b = &d->candidate[j];
+				struct sighting *a = &d->candidate[i], *b = &d->candidate[j];
 				vec2 way = vec2_sub(b->fit.pos, a->fit.pos);
 				double gap = vec2_norm(way) - diameter;
 				if (gap >= 0)
@@ -355,7 +355,7 @@ static void push_apart(struct detector *d, int sweeps)
 static void judge_all(struct detector *d, double relief)
 {
 	for (int i = 0; i < d->count; i++) {
-		struct candidate *c = &d->candidate[i];
+		struct sighting *c = &d->candidate[i];
 		if (c->fixed || c->judged)
 			continue;
 		look_around(d, c, true);
@@ -411,7 +411,7 @@ void detector_begin(struct detector *d, const struct image *frame, const struct 
 		.frame = frame, .camera = camera, .radius = d->table->ball_radius, .other = d->neighbour};
 }
 
-void detector_keep(struct detector *d, const struct candidate *known, int tag)
+void detector_keep(struct detector *d, const struct sighting *known, int tag)
 {
 	if (d->count == DETECT_MAX)
 		return;
@@ -421,9 +421,9 @@ void detector_keep(struct detector *d, const struct candidate *known, int tag)
 	d->candidate[d->count++].tag = tag;
 }
 
-bool detector_follow(struct detector *d, const struct candidate *known, vec2 pos, int tag)
+bool detector_follow(struct detector *d, const struct sighting *known, vec2 pos, int tag)
 {
-	struct candidate c = *known;
+	struct sighting c = *known;
 	c.fixed = c.judged = false;
 	c.refusal = REFUSED_NOT;
 	c.tag = tag;
@@ -466,9 +466,10 @@ double detector_cover(const struct detector *d, vec2 px)
 
 bool detector_frame(struct detector *d, const struct image *frame, const struct camera *camera)
 {
-	detector_begin(d, frame, camera);
+	d->count = d->refused_count = 0;
 	if (!scan_frame(&d->scan, frame))
 		return false;
+	detector_begin(d, frame, camera);
 	stage_scan(d->watch, frame, &d->scan);
 	detector_search(d, d->scan.changed);
 	detector_settle(d);

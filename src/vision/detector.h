@@ -1,6 +1,6 @@
 /* Balls in one calibrated frame: seeds, fits, and the tests that tell balls from everything else. */
-#ifndef BILLIARD_VISION_DETECT_H
-#define BILLIARD_VISION_DETECT_H
+#ifndef BILLIARD_VISION_DETECTOR_H
+#define BILLIARD_VISION_DETECTOR_H
 
 #include "vision/colour.h"
 #include "vision/fit.h"
@@ -13,7 +13,7 @@ enum { DETECT_MAX = 48 };
 /* Why a candidate was refused; for pictures and statistics. */
 enum refusal { REFUSED_NOT, REFUSED_PLACE, REFUSED_FIT, REFUSED_DOUBLE, REFUSED_RIM, REFUSED_INSIDE, REFUSED_SIZE };
 
-struct candidate {
+struct sighting {
 	struct fit fit;
 	struct colour_feature look;
 	double cover;	   /* share of the inside that is not cloth */
@@ -35,9 +35,9 @@ struct detector {
 	struct fit_view view; /* frame and camera from begin to settle */
 	struct fit neighbour[DETECT_MAX];
 	int count;
-	struct candidate candidate[DETECT_MAX]; /* accepted ones */
+	struct sighting candidate[DETECT_MAX]; /* accepted ones */
 	int refused_count;
-	struct candidate refused[SEED_MAX];
+	struct sighting refused[SEED_MAX];
 };
 
 /* Borrows table and colours (NULL is fine). 0 or -ENOMEM. */
@@ -53,9 +53,9 @@ bool detector_frame(struct detector *d, const struct image *frame, const struct 
  * active cells; settle. Candidates that are known carry the caller's tag. frame and camera are borrowed until settle. */
 void detector_begin(struct detector *d, const struct image *frame, const struct camera *camera);
 /* A ball that did not change. */
-void detector_keep(struct detector *d, const struct candidate *known, int tag);
+void detector_keep(struct detector *d, const struct sighting *known, int tag);
 /* A ball to be fitted again, near pos; scale and look are taken from known. False when it is not there. */
-bool detector_follow(struct detector *d, const struct candidate *known, vec2 pos, int tag);
+bool detector_follow(struct detector *d, const struct sighting *known, vec2 pos, int tag);
 /* active: one byte a cell of the scan; NULL: all. */
 void detector_search(struct detector *d, const uint8_t *active);
 void detector_settle(struct detector *d);
