@@ -24,10 +24,10 @@ SEARCH := candidate cost crew figures frontier geometry plan play pool rank refi
 VISION := calibration camera colour detector fit linear marker_edges outline pose reason scan scan_changes scan_cloth scan_copy scan_marks scan_place seeds stabilise stages track vision
 VISION_CV := capture_cv image_io_cv markers_cv marker_image_cv
 # app: what the programs share, room by room
-APP_PROCESS := ball_message bus clock frame_source process supervisor text
+APP_PROCESS := ball_message bus clock frame_source message_check message_table process supervisor text
 APP_CONFIG := config config_reader config_table config_vision text_file save position shot_file colour_file
 APP_CONTROL := fsm stability controller
-APP_LIGHT := animation draw draw_field draw_path draw_proposal picture render window
+APP_LIGHT := animation draw draw_field draw_path draw_proposal keyframe picture render window
 APP_PLANNER := plan_check plan_message planner_service request_message
 APP_VIRTUAL := table_scene table_camera table_camera_ball player
 APP_COMMANDS := cmd cmd_calibrate cmd_demo cmd_detect cmd_plan cmd_run cmd_simulate cmd_status overlay plot
@@ -37,7 +37,7 @@ APP := $(addprefix process/,$(APP_PROCESS)) $(addprefix config/,$(APP_CONFIG)) $
 # programs: src/app/programs/main_NAME.c becomes build/NAME
 PROGRAMS := billiard billiard-vision billiard-planner billiard-infinity billiard-projector billiard-table
 # tests/test_NAME.c each; tests/NAME.c shared by them
-TESTS := signature fsm stability plan_message controller planner_service planner_bus bus process supervisor frame_source services loop replay \
+TESTS := signature message_check fsm stability plan_message controller planner_service planner_bus bus process supervisor frame_source services loop replay \
 	config position save cmd plot draw render player table_camera contact_real contact_recorded shot_file \
 	rules cost geometry frontier pool scheme candidate plan plan_thesis plan_hard plan_complete tolerance refine solutions request \
 	ball contact predict event inverse model motion queue roots sim sim_hard table trace \

@@ -10,6 +10,7 @@
 #include "app/planner/request_message.h"
 #include "app/light/animation.h"
 #include "app/process/bus.h"
+#include "app/process/message_table.h"
 #include "app/config/config.h"
 #include "app/control/controller.h"
 #include "app/light/draw.h"
@@ -36,14 +37,16 @@ static void load(void)
 static void use_plan(const billiard_plan_t *plan)
 {
 	static billiard_draw_list_t list;
+	char text[128];
 	static billiard_animation_t animation;
 	static const struct draw_options all = {true, true, true, true};
 	if (!plan_check(plan, &config.table) || plan->entry_count == 0)
 		return;
 	draw_proposal(&list, &config.table, plan, 0, 0, &all);
-	draw_check(&list);
+	if (!message_check(&message_draw_list, &list, text, sizeof text) || !draw_check(&list))
+		abort();
 	plan_message_animation(&animation, plan, 0, 0);
-	if (!animation_check(&animation))
+	if (!message_check(&message_animation, &animation, text, sizeof text) || !animation_check(&animation))
 		abort();
 	animation_position(&animation, 1);
 }
@@ -52,6 +55,8 @@ static void use(const struct bus_type *type, const void *message)
 {
 	char text[256];
 	struct plan_request request;
+	if (!message_check(type->table, message, text, sizeof text))
+		return;
 	controller_init(&controller, &config);
 	if (type == &bus_table_state) {
 		controller_state(&controller, message, 1);

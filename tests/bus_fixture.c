@@ -82,7 +82,8 @@ static int raw_encode(void *bytes, int offset, int max, const void *message)
 	return raw->size;
 }
 
-const struct bus_type bus_raw = {"raw", sizeof(struct raw_message), NULL, raw_size, raw_encode, NULL, NULL};
+const struct bus_type bus_raw = {
+	.name = "raw", .size = sizeof(struct raw_message), .encoded_size = raw_size, .encode = raw_encode};
 
 /* ---- programs ---------------------------------------------------------------------------------------------------- */
 

@@ -83,8 +83,12 @@ void client_begin(struct planner_client *client, const struct planner_setup *set
 	*client = (struct planner_client){.id = 1};
 	write_conf(setup);
 	client->bus = fixture_bus();
-	ck_assert_int_eq(bus_subscribe(client->bus, "PLAN", &bus_plan, BUS_EACH, on_plan, client), 0);
-	ck_assert_int_eq(bus_subscribe(client->bus, "STATUS", &bus_status, BUS_EACH, on_status, client), 0);
+	ck_assert_int_eq(
+		bus_subscribe(client->bus, &(struct bus_subscription){"PLAN", &bus_plan, BUS_EACH, on_plan, client}),
+		0);
+	ck_assert_int_eq(bus_subscribe(client->bus,
+				       &(struct bus_subscription){"STATUS", &bus_status, BUS_EACH, on_status, client}),
+			 0);
 	client_start(client);
 }
 

@@ -43,11 +43,17 @@ HEAR(state, billiard_table_state_t)
 
 void service_listen(struct bus *to)
 {
-	ck_assert_int_eq(bus_subscribe(to, "STATUS", &bus_status, BUS_EACH, on_status, NULL), 0);
-	ck_assert_int_eq(bus_subscribe(to, "PLAN_REQUEST", &bus_plan_request, BUS_EACH, on_request, NULL), 0);
-	ck_assert_int_eq(bus_subscribe(to, "PLAN", &bus_plan, BUS_EACH, on_plan, NULL), 0);
-	ck_assert_int_eq(bus_subscribe(to, "DRAW", &bus_draw_list, BUS_EACH, on_draw, NULL), 0);
-	ck_assert_int_eq(bus_subscribe(to, "TABLE_STATE", &bus_table_state, BUS_EACH, on_state, NULL), 0);
+	ck_assert_int_eq(
+		bus_subscribe(to, &(struct bus_subscription){"STATUS", &bus_status, BUS_EACH, on_status, NULL}), 0);
+	ck_assert_int_eq(bus_subscribe(to, &(struct bus_subscription){"PLAN_REQUEST", &bus_plan_request, BUS_EACH,
+								      on_request, NULL}),
+			 0);
+	ck_assert_int_eq(bus_subscribe(to, &(struct bus_subscription){"PLAN", &bus_plan, BUS_EACH, on_plan, NULL}), 0);
+	ck_assert_int_eq(bus_subscribe(to, &(struct bus_subscription){"DRAW", &bus_draw_list, BUS_EACH, on_draw, NULL}),
+			 0);
+	ck_assert_int_eq(bus_subscribe(to, &(struct bus_subscription){"TABLE_STATE", &bus_table_state, BUS_EACH,
+								      on_state, NULL}),
+			 0);
 }
 
 /* The shipped table, but played fast, with all services on the virtual camera. */

@@ -11,6 +11,7 @@
 #include <string.h>
 
 #include "app/process/bus.h"
+#include "app/process/message_table.h"
 #include "harness.h"
 
 /* The controller fed with messages as they come from the bus; nothing else is real. 30 frames a second. */
@@ -25,6 +26,32 @@ static void place(int i, enum ball_colour colour, double x, double y)
 {
 	struct ball ball = ball_at(colour, (vec2){x, y});
 	ball_to_message(&state.balls[i], &ball, "", i + 1);
+}
+
+/* As from the bus: what its table does not allow reaches no controller. */
+static bool see(const billiard_table_state_t *message)
+{
+	char reason[128];
+	return message_check(&message_table_state, message, reason, sizeof reason) &&
+	       controller_state(&c, message, now);
+}
+
+static bool take(const billiard_plan_t *message)
+{
+	char reason[128];
+	return message_check(&message_plan, message, reason, sizeof reason) && controller_plan(&c, message, now);
+}
+
+static bool draws_well(void)
+{
+	char reason[128];
+	return message_check(&message_draw_list, &c.draw, reason, sizeof reason) && draw_check(&c.draw);
+}
+
+static bool moves_well(void)
+{
+	char reason[128];
+	return message_check(&message_animation, &c.animation, reason, sizeof reason) && animation_check(&c.animation);
 }
 
 static void setup(void)
@@ -57,7 +84,7 @@ static bool frame(void)
 	state.utime += FRAME_US;
 	state.seq++;
 	now += 1e-6 * FRAME_US;
-	bool ok = controller_state(&c, &state, now);
+	bool ok = see(&state);
 	controller_tick(&c, now);
 	flush();
 	return ok;
@@ -128,7 +155,7 @@ static bool command(const char *name, const char *argument)
 static void proposed(void)
 {
 	frames(MANY);
-	ck_assert(controller_plan(&c, answer(PLAN_MESSAGE_OK, 0.5), now));
+	ck_assert(take(answer(PLAN_MESSAGE_OK, 0.5)));
 	flush();
 	ck_assert_int_eq(c.fsm.state, FSM_SHOWING);
 }
@@ -160,10 +187,10 @@ END_TEST
 START_TEST(an_answer_is_drawn_and_stays)
 {
 	proposed();
-	ck_assert(draw_check(&c.draw));
+	ck_assert(draws_well());
 	ck_assert_int_eq(c.draw.plan_id, c.request.id);
 	ck_assert_int_gt(c.draw.item_count, 0);
-	ck_assert(animation_check(&c.animation) && c.animation.keyframe_count == 1 && c.animation.run);
+	ck_assert(moves_well() && c.animation.keyframe_count == 1 && c.animation.run);
 	int64_t before = draws;
 	frames(MANY);
 	ck_assert(draws == before && requests == 1 && c.proposals == 1);
@@ -190,7 +217,7 @@ START_TEST(motion_while_planning_cancels)
 	int64_t id = c.request.id;
 	shot();
 	ck_assert_int_eq(cancels, 1);
-	ck_assert(controller_plan(&c, answer(PLAN_MESSAGE_OK, 0.5), now));
+	ck_assert(take(answer(PLAN_MESSAGE_OK, 0.5)));
 	ck_assert(c.fsm.state == FSM_WATCHING && c.draw.plan_id == 0 && c.proposals == 0);
 	frames(MANY);
 	ck_assert_int_gt(c.request.id, id);
@@ -202,11 +229,11 @@ START_TEST(improved_answers_replace_repeated_ones_do_not)
 	proposed();
 	billiard_plan_t *plan = answer(PLAN_MESSAGE_OK, 0.9);
 	plan->sequence = 3;
-	ck_assert(controller_plan(&c, plan, now));
+	ck_assert(take(plan));
 	ck_assert_double_eq(c.plan.entries[0].shots[0].angle, 0.9);
 	plan = answer(PLAN_MESSAGE_OK, 0.2);
 	plan->sequence = 2; /* late */
-	ck_assert(controller_plan(&c, plan, now));
+	ck_assert(take(plan));
 	ck_assert_double_eq(c.plan.entries[0].shots[0].angle, 0.9);
 	ck_assert_int_eq(c.proposals, 1);
 }
@@ -217,7 +244,7 @@ START_TEST(no_plan_is_said_on_the_table)
 	frames(MANY);
 	billiard_plan_t *plan = answer(PLAN_MESSAGE_NONE, 0);
 	text_set(plan->reason, sizeof plan->reason, "no shot found");
-	ck_assert(controller_plan(&c, plan, now));
+	ck_assert(take(plan));
 	ck_assert_int_eq(c.fsm.state, FSM_SHOWING);
 	ck_assert_str_eq(c.drawn_note, "no shot found");
 	ck_assert(command("halo", ""));
@@ -241,7 +268,7 @@ START_TEST(a_lost_request_or_answer_is_repeated)
 	ck_assert(requests == 2 && c.request.id == id);
 	frames(wait);
 	ck_assert_int_eq(requests, 3);
-	ck_assert(controller_plan(&c, answer(PLAN_MESSAGE_OK, 0.5), now));
+	ck_assert(take(answer(PLAN_MESSAGE_OK, 0.5)));
 	ck_assert_int_eq(c.fsm.state, FSM_SHOWING);
 }
 END_TEST
@@ -250,7 +277,7 @@ START_TEST(a_request_that_somebody_else_cancelled_gets_a_new_id)
 {
 	frames(MANY);
 	int64_t id = c.request.id;
-	ck_assert(controller_plan(&c, answer(PLAN_MESSAGE_CANCELLED, 0), now));
+	ck_assert(take(answer(PLAN_MESSAGE_CANCELLED, 0)));
 	ck_assert_int_eq(c.fsm.state, FSM_PLANNING);
 	frames((int)(config.infinity.plan_timeout * 30) + 5);
 	ck_assert(requests == 2 && c.request.id > id);
@@ -259,13 +286,13 @@ END_TEST
 
 START_TEST(late_and_foreign_answers_are_ignored)
 {
-	ck_assert(!controller_plan(&c, answer(PLAN_MESSAGE_OK, 0.5), now)); /* nothing was asked: id 0 */
+	ck_assert(!take(answer(PLAN_MESSAGE_OK, 0.5))); /* nothing was asked: id 0 */
 	frames(MANY);
 	billiard_plan_t *plan = answer(PLAN_MESSAGE_OK, 0.5);
 	plan->request_id--;
-	ck_assert(!controller_plan(&c, plan, now));
+	ck_assert(!take(plan));
 	plan = answer(PLAN_MESSAGE_OK, NAN);
-	ck_assert(!controller_plan(&c, plan, now));
+	ck_assert(!take(plan));
 	ck_assert(c.fsm.state == FSM_PLANNING && !c.has_plan && c.proposals == 0);
 }
 END_TEST
@@ -276,9 +303,9 @@ START_TEST(doubled_and_late_frames_are_ignored)
 	struct controller *before = malloc(sizeof *before);
 	ck_assert_ptr_nonnull(before);
 	*before = c;
-	ck_assert(!controller_state(&c, &state, now));
+	ck_assert(!see(&state));
 	state.utime -= 10 * FRAME_US;
-	ck_assert(!controller_state(&c, &state, now));
+	ck_assert(!see(&state));
 	ck_assert_int_eq(memcmp(&c, before, sizeof c), 0);
 	free(before);
 }
@@ -292,8 +319,7 @@ START_TEST(malformed_frames_change_nothing)
 	ck_assert_ptr_nonnull(before);
 	*before = c;
 #define BAD(field, value)                                                                                              \
-	(state = good, state.utime += FRAME_US, state.field = (value),                                                 \
-	 ck_assert_msg(!controller_state(&c, &state, now), #field " = " #value))
+	(state = good, state.utime += FRAME_US, state.field = (value), ck_assert_msg(!see(&state), #field " = " #value))
 	BAD(ball_count, -1);
 	BAD(ball_count, 23);
 	BAD(ball_count, INT32_MAX);
@@ -333,7 +359,7 @@ START_TEST(lost_calibration_clears_and_says_why)
 	frames(10);
 	ck_assert_int_eq(c.fsm.state, FSM_BLIND);
 	ck_assert_str_eq(c.drawn_note, "not calibrated: 2 of 4 markers");
-	ck_assert(c.draw.plan_id == 0 && draw_check(&c.draw));
+	ck_assert(c.draw.plan_id == 0 && draws_well());
 	text_set(state.reason, sizeof state.reason, "no markers");
 	frames(1);
 	ck_assert_str_eq(c.drawn_note, "not calibrated: no markers");
@@ -387,7 +413,7 @@ START_TEST(overlaps_of_a_camera_are_settled_in_the_request)
 	char err[96];
 	ck_assert_msg(plan_request_from_message(&r, &c.request, &config.table, err, sizeof err) == 0, "%s", err);
 	/* Nothing moved on the table: no new request. */
-	ck_assert(controller_plan(&c, answer(PLAN_MESSAGE_OK, 0.5), now));
+	ck_assert(take(answer(PLAN_MESSAGE_OK, 0.5)));
 	frames(MANY);
 	ck_assert_int_eq(requests, 1);
 }
@@ -444,7 +470,7 @@ START_TEST(the_animation_stops_seeks_and_restarts)
 	now += 0.25;
 	command("animation-seek", "0.5");
 	ck_assert_double_eq_tol(c.animation.position, 0.75, 1e-9);
-	ck_assert(animation_check(&c.animation));
+	ck_assert(moves_well());
 	command("animation-restart", "");
 	ck_assert(c.animation.position == 0 && c.animation.run);
 	command("animation", "");
@@ -494,7 +520,7 @@ static uint64_t storm(uint64_t seed)
 		else if (what == 1)
 			shot();
 		else if (what == 2)
-			controller_plan(&c, answer((int8_t)(random_u64(&random) % 6), random_in(&random, -4, 4)), now);
+			take(answer((int8_t)(random_u64(&random) % 6), random_in(&random, -4, 4)));
 		else if (what == 3)
 			state.occluded = !state.occluded;
 		else if (what == 4)
@@ -505,8 +531,8 @@ static uint64_t storm(uint64_t seed)
 		else if (what == 6)
 			place(0, COLOUR_WHITE, random_in(&random, -0.9, 0.9), random_in(&random, -0.4, 0.4));
 		frame();
-		ck_assert(draw_check(&c.draw));
-		ck_assert(animation_check(&c.animation));
+		ck_assert(draws_well());
+		ck_assert(moves_well());
 		h = hash(h, &c.draw, sizeof c.draw);
 		h = hash(h, &c.animation, sizeof c.animation);
 		h = hash(h, &c.request, sizeof c.request);

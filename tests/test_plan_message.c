@@ -11,6 +11,7 @@
 #include <string.h>
 
 #include "app/process/bus.h"
+#include "app/process/message_table.h"
 #include "app/config/config.h"
 #include "app/light/draw.h"
 #include "harness.h"
@@ -59,6 +60,31 @@ static void make_request(void)
 	}
 }
 
+/* As from the bus: first the table of the type, then the border of the message. */
+static bool plan_passes(const billiard_plan_t *message)
+{
+	char reason[128];
+	return message_check(&message_plan, message, reason, sizeof reason) && plan_check(message, &config.table);
+}
+
+static bool animation_passes(const billiard_animation_t *message)
+{
+	char reason[128];
+	return message_check(&message_animation, message, reason, sizeof reason) && animation_check(message);
+}
+
+static bool list_passes(const billiard_draw_list_t *message)
+{
+	char reason[128];
+	return message_check(&message_draw_list, message, reason, sizeof reason) && draw_check(message);
+}
+
+static bool ball_passes(const billiard_ball_t *message)
+{
+	char reason[128];
+	return message_check(&message_ball, message, reason, sizeof reason);
+}
+
 static void load(void)
 {
 	char err[640];
@@ -103,7 +129,8 @@ START_TEST(balls_keep_every_field)
 	ball_to_message(&message, &ball, "PINK0", 42);
 	ck_assert_str_eq((const char *)message.name, "PINK0");
 	ck_assert_int_eq(message.track, 42);
-	ck_assert(ball_from_message(&back, &message));
+	ck_assert(ball_passes(&message));
+	back = ball_from_message(&message);
 	ck_assert(back.colour == ball.colour && back.phase == ball.phase && back.pos.x == ball.pos.x &&
 		  back.pos.y == ball.pos.y && back.vel.x == ball.vel.x && back.vel.y == ball.vel.y);
 	ball_to_message(&message, &ball, "A NAME THAT IS TOO LONG", 1);
@@ -113,28 +140,28 @@ END_TEST
 
 START_TEST(bad_balls_are_refused)
 {
-	struct ball ball = ball_at(COLOUR_PINK, (vec2){0, 0}), out = {.pos = {7, 7}};
+	struct ball ball = ball_at(COLOUR_PINK, (vec2){0, 0});
 	billiard_ball_t good, bad;
 	ball_to_message(&good, &ball, "X", 1);
 	static const double wrong[] = {NAN, INFINITY, -INFINITY, 101, 1e300};
 	for (size_t i = 0; i < sizeof wrong / sizeof wrong[0]; i++) {
 		bad = good;
 		bad.x = wrong[i];
-		ck_assert(!ball_from_message(&out, &bad));
+		ck_assert(!ball_passes(&bad));
 		bad = good;
 		bad.y = -wrong[i];
-		ck_assert(!ball_from_message(&out, &bad));
+		ck_assert(!ball_passes(&bad));
 		bad = good;
 		bad.vx = wrong[i];
-		ck_assert(isfinite(wrong[i]) || !ball_from_message(&out, &bad));
+		ck_assert(isfinite(wrong[i]) || !ball_passes(&bad));
 	}
 	for (int v = -128; v < 128; v++) {
 		bad = good;
 		bad.colour = (int8_t)v;
-		ck_assert_int_eq(ball_from_message(&out, &bad), v >= 0 && v < COLOUR_COUNT);
+		ck_assert_int_eq(ball_passes(&bad), v >= 0 && v < COLOUR_COUNT);
 		bad = good;
 		bad.phase = (int8_t)v;
-		ck_assert_int_eq(ball_from_message(&out, &bad), v >= 0 && v <= BALL_POTTED);
+		ck_assert_int_eq(ball_passes(&bad), v >= 0 && v <= BALL_POTTED);
 	}
 }
 END_TEST
@@ -163,8 +190,9 @@ static void refused(const billiard_plan_request_t *bad, const char *what)
 	char err[ERR_SIZE] = "";
 	memset(&out, 0x5a, sizeof out);
 	memcpy(&before, &out, sizeof out);
-	ck_assert_msg(plan_request_from_message(&out, bad, &config.table, err, sizeof err) == -EINVAL,
-		      "%s was accepted", what);
+	if (message_check(&message_plan_request, bad, err, sizeof err))
+		ck_assert_msg(plan_request_from_message(&out, bad, &config.table, err, sizeof err) == -EINVAL,
+			      "%s was accepted", what);
 	ck_assert_msg(err[0] != '\0', "%s: no reason", what);
 	ck_assert_msg(memcmp(&out, &before, sizeof out) == 0, "%s: output touched", what);
 }
@@ -229,7 +257,7 @@ START_TEST(answers_name_their_request)
 		ck_assert_int_eq(plan.colours[i], request.balls[i].colour);
 		ck_assert_int_eq(memcmp(plan.names[i], request.balls[i].name, sizeof plan.names[i]), 0);
 	}
-	ck_assert(plan_check(&plan, &config.table));
+	ck_assert(plan_passes(&plan));
 }
 END_TEST
 
@@ -240,7 +268,7 @@ START_TEST(a_request_with_an_absurd_count_gets_an_answer_in_range)
 		request.ball_count = counts[i];
 		plan_message_begin(&plan, &request);
 		plan.status = PLAN_MESSAGE_REFUSED;
-		ck_assert(plan_check(&plan, &config.table));
+		ck_assert(plan_passes(&plan));
 	}
 }
 END_TEST
@@ -374,7 +402,7 @@ START_TEST(too_many_keyframes_leave_whole_shots_out)
 	ck_assert_msg(rc == 0, "%s", err);
 	plan_message_begin(&plan, &request);
 	plan_message_fill(&plan, &result, &config.table, &config.model, scratch);
-	ck_assert(result.plan_count == 0 || plan_check(&plan, &config.table));
+	ck_assert(result.plan_count == 0 || plan_passes(&plan));
 	int used = 0;
 	for (int i = 0; i < plan.entry_count; i++)
 		for (int k = 0; k < plan.entries[i].shot_count; k++)
@@ -389,8 +417,7 @@ START_TEST(malformed_plans_are_refused)
 {
 	billiard_plan_t *bad = malloc(sizeof *bad);
 	ck_assert_ptr_nonnull(bad);
-#define BAD(field, value)                                                                                              \
-	(*bad = plan, bad->field = (value), ck_assert_msg(!plan_check(bad, &config.table), #field " = " #value))
+#define BAD(field, value) (*bad = plan, bad->field = (value), ck_assert_msg(!plan_passes(bad), #field " = " #value))
 	BAD(request_id, 0);
 	BAD(status, -1);
 	BAD(status, 4);
@@ -459,7 +486,7 @@ START_TEST(plans_survive_the_wire)
 	ck_assert_int_eq(bus_plan.decode(bytes, 0, size, back), size);
 	ck_assert_int_eq(bus_plan.encode(again, 0, size, back), size);
 	ck_assert_int_eq(memcmp(bytes, again, (size_t)size), 0);
-	ck_assert(plan_check(back, &config.table));
+	ck_assert(plan_passes(back));
 	same_shot(&back->entries[0].shots[0], &result.plan[0].shot[0]);
 	free(bytes);
 	free(again);
@@ -472,7 +499,7 @@ START_TEST(spoiled_plans_are_refused_or_harmless)
 {
 	struct random random = random_begin("plan_message spoiled");
 	struct draw_options options = {true, true, true, true};
-	int size = bus_plan.encoded_size(&plan), accepted = 0, drawable = 0;
+	int size = bus_plan.encoded_size(&plan), accepted = 0;
 	uint8_t *good = malloc((size_t)size), *bytes = malloc((size_t)size);
 	billiard_plan_t *back = calloc(1, sizeof *back);
 	billiard_draw_list_t *list = malloc(sizeof *list);
@@ -487,17 +514,15 @@ START_TEST(spoiled_plans_are_refused_or_harmless)
 				(uint8_t)random_u64(&random);
 		if (bus_plan.decode(bytes, 0, size, back) != size)
 			continue;
-		if (!plan_check(back, &config.table) || back->entry_count == 0)
+		if (!plan_passes(back) || back->entry_count == 0)
 			continue;
 		accepted++;
 		draw_proposal(list, &config.table, back, 0, 0, &options);
-		/* Places far off the table are the projector's to refuse. */
-		ck_assert(list->item_count <= DRAW_ITEM_MAX && list->point_count <= DRAW_POINT_MAX);
-		drawable += draw_check(list);
+		ck_assert(list_passes(list));
 		plan_message_animation(animation, back, 0, 0);
-		ck_assert(animation_check(animation));
+		ck_assert(animation_passes(animation));
 	}
-	ck_assert_int_gt(drawable, 100);
+	ck_assert_int_gt(accepted, 100);
 	free(good);
 	free(bytes);
 	free(back);
@@ -513,7 +538,7 @@ START_TEST(an_animation_is_one_shot_of_the_plan)
 	static billiard_animation_t a;
 	const billiard_plan_shot_t *shot = &plan.entries[0].shots[0];
 	plan_message_animation(&a, &plan, 0, 0);
-	ck_assert(animation_check(&a));
+	ck_assert(animation_passes(&a));
 	ck_assert(a.plan_id == plan.request_id && a.run && a.rate == 1 && a.ball_count == plan.ball_count);
 	ck_assert_int_eq(a.keyframe_count, shot->keyframe_count);
 	ck_assert_int_eq(memcmp(a.keyframes, &plan.keyframes[shot->keyframe_first],
@@ -549,7 +574,7 @@ START_TEST(malformed_animations_are_refused)
 	static billiard_animation_t good, bad;
 	plan_message_animation(&good, &plan, 0, 0);
 #define BAD_ANIMATION(field, value)                                                                                    \
-	(bad = good, bad.field = (value), ck_assert_msg(!animation_check(&bad), #field " = " #value))
+	(bad = good, bad.field = (value), ck_assert_msg(!animation_passes(&bad), #field " = " #value))
 	BAD_ANIMATION(keyframe_count, -1);
 	BAD_ANIMATION(keyframe_count, 769);
 	BAD_ANIMATION(ball_count, -1);

@@ -1,6 +1,7 @@
 #include "app/process/clock.h"
 #include "app/process/ball_message.h"
 #include "app/planner/plan_check.h"
+#include "app/process/message_table.h"
 #include "app/planner/planner_service.h"
 
 #include <math.h>
@@ -194,27 +195,43 @@ START_TEST(a_cancelled_request_is_answered_as_such_also_when_asked_again)
 }
 END_TEST
 
+/* As billiard-planner does. */
+static void ask(void)
+{
+	char reason[96];
+	if (message_check(&message_plan_request, &request, reason, sizeof reason))
+		planner_service_request(service, &request);
+	else
+		planner_service_refuse(service, &request, reason);
+}
+
 START_TEST(bad_requests_are_refused_with_the_reason)
 {
 	make(1, true);
 	request.ball_count = 99;
-	planner_service_request(service, &request);
+	ask();
 	final();
 	ck_assert(answer.status == PLAN_MESSAGE_REFUSED && answer.request_id == 1 && answer.entry_count == 0);
 	ck_assert_ptr_nonnull(strstr((const char *)answer.reason, "ball_count"));
 	ck_assert(plan_check(&answer, &config.table));
 	make(2, true);
 	request.balls[1].x = NAN;
-	planner_service_request(service, &request);
+	ask();
 	final();
 	ck_assert_int_eq(answer.status, PLAN_MESSAGE_REFUSED);
+	ck_assert_ptr_nonnull(strstr((const char *)answer.reason, "balls[1].x: found nan"));
+	make(3, true);
+	request.depth = 9; /* the search's own limit */
+	ask();
+	final();
+	ck_assert(answer.status == PLAN_MESSAGE_REFUSED && answer.request_id == 3);
 	/* After that it works as before. */
-	planner_service_request(service, make(3, true));
+	planner_service_request(service, make(4, true));
 	final();
 	ck_assert_int_eq(answer.status, PLAN_MESSAGE_OK);
 	struct planner_service_figures f;
 	planner_service_figures(service, &f);
-	ck_assert_int_eq(f.refused, 2);
+	ck_assert_int_eq(f.refused, 3);
 }
 END_TEST
 

@@ -107,7 +107,9 @@ static void setup(void)
 {
 	statuses = 0;
 	ck_assert_int_eq(process_init(&process, "billiard-test", &OPTIONS, &config), 0);
-	ck_assert_int_eq(bus_subscribe(process.bus, "STATUS", &bus_status, BUS_EACH, on_status, NULL), 0);
+	ck_assert_int_eq(bus_subscribe(process.bus,
+				       &(struct bus_subscription){"STATUS", &bus_status, BUS_EACH, on_status, NULL}),
+			 0);
 }
 
 static void teardown(void)

@@ -160,8 +160,9 @@ START_TEST(a_recorded_demo_gives_the_same_proposals_again)
 	write_conf();
 	snprintf(log, sizeof log, "%s", fixture_file("demo.log"));
 	bus = fixture_bus();
-	ck_assert_int_eq(bus_subscribe(bus, "PLAN", &bus_plan, BUS_EACH, on_plan, NULL), 0);
-	ck_assert_int_eq(bus_subscribe(bus, "STATUS", &bus_status, BUS_EACH, on_status, NULL), 0);
+	ck_assert_int_eq(bus_subscribe(bus, &(struct bus_subscription){"PLAN", &bus_plan, BUS_EACH, on_plan, NULL}), 0);
+	ck_assert_int_eq(
+		bus_subscribe(bus, &(struct bus_subscription){"STATUS", &bus_status, BUS_EACH, on_status, NULL}), 0);
 	record(log);
 	int count = proposal_count < SHOTS ? proposal_count : SHOTS;
 	ck_assert_int_eq(count, SHOTS);

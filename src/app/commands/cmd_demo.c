@@ -375,12 +375,15 @@ static int start_services(struct demo *d, char *err, size_t err_size)
 static int subscribe_all(struct demo *d)
 {
 	struct bus *bus = d->process.bus;
-	int r = bus_subscribe(bus, "CAMERA", &bus_image, BUS_LATEST, on_camera, d);
-	r = r < 0 ? r : bus_subscribe(bus, "TABLE_STATE", &bus_table_state, BUS_EACH, on_seen, d);
-	r = r < 0 ? r : bus_subscribe(bus, "PLAN", &bus_plan, BUS_EACH, on_plan, d);
-	r = r < 0 ? r : bus_subscribe(bus, "DRAW", &bus_draw_list, BUS_EACH, on_draw, d);
-	r = r < 0 ? r : bus_subscribe(bus, "STATUS", &bus_status, BUS_EACH, on_status, d);
-	return r < 0 ? r : bus_subscribe(bus, "TRUTH", &bus_table_state, BUS_EACH, on_truth, d);
+	int r = bus_subscribe(bus, &(struct bus_subscription){"CAMERA", &bus_image, BUS_LATEST, on_camera, d});
+	r = r < 0 ? r
+		  : bus_subscribe(bus,
+				  &(struct bus_subscription){"TABLE_STATE", &bus_table_state, BUS_EACH, on_seen, d});
+	r = r < 0 ? r : bus_subscribe(bus, &(struct bus_subscription){"PLAN", &bus_plan, BUS_EACH, on_plan, d});
+	r = r < 0 ? r : bus_subscribe(bus, &(struct bus_subscription){"DRAW", &bus_draw_list, BUS_EACH, on_draw, d});
+	r = r < 0 ? r : bus_subscribe(bus, &(struct bus_subscription){"STATUS", &bus_status, BUS_EACH, on_status, d});
+	return r < 0 ? r
+		     : bus_subscribe(bus, &(struct bus_subscription){"TRUTH", &bus_table_state, BUS_EACH, on_truth, d});
 }
 
 static int run(struct demo *d)

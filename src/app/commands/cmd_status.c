@@ -216,7 +216,8 @@ int cmd_status(int argc, char **argv)
 	if ((status = open_bus(&o, "status", &config, &bus)))
 		return status;
 	struct listener *listener = calloc(1, sizeof *listener);
-	if (listener && bus_subscribe(bus, "STATUS", &bus_status, BUS_EACH, on_status, listener) == 0 &&
+	if (listener &&
+	    bus_subscribe(bus, &(struct bus_subscription){"STATUS", &bus_status, BUS_EACH, on_status, listener}) == 0 &&
 	    listen_for(bus, o.seconds) >= 0) {
 		for (int i = 0; i < listener->count; i++)
 			(o.json ? print_json : print_line)(&listener->status[i]);

@@ -9,7 +9,6 @@
 #include "app/planner/plan_check.h"
 #include "app/light/animation.h"
 #include "app/planner/plan_message.h"
-#include "app/process/bus.h"
 
 static const double SETTLE_MAX = 0.006; /* m a ball may be moved to take camera errors out of a layout */
 static const double NEW_LAYOUT = 0.003; /* m a ball must lie elsewhere for a new proposal */
@@ -173,21 +172,15 @@ static void event(struct controller *c, enum fsm_event e, double now)
 
 /* ---- what is seen --------------------------------------------------------------------------------------------------- */
 
-/* Balls of a message; false when a number is out of range. Unknown colours count as red: they can only be played as one. */
-static bool layout_from_message(struct layout *out, const billiard_table_state_t *state)
+/* Unknown colours count as red: they can only be played as one. */
+static void layout_from_message(struct layout *out, const billiard_table_state_t *state)
 {
-	*out = (struct layout){.cue = -1};
-	if (state->ball_count < 0 || state->ball_count > BALL_MAX)
-		return false;
-	for (int i = 0; i < state->ball_count; i++) {
-		struct ball ball;
-		if (!ball_from_message(&ball, &state->balls[i]))
-			return false;
+	*out = (struct layout){.count = state->ball_count, .cue = -1};
+	for (int i = 0; i < out->count; i++) {
+		struct ball ball = ball_from_message(&state->balls[i]);
 		out->ball[i] = ball_at(ball.colour == COLOUR_UNKNOWN ? COLOUR_RED : ball.colour, ball.pos);
 		out->track[i] = state->balls[i].track;
-		out->count++;
 	}
-	return true;
 }
 
 /* A second white ball is a false one: it is left out of what is planned for. */
@@ -231,10 +224,9 @@ bool controller_state(struct controller *c, const billiard_table_state_t *state,
 {
 	struct layout layout;
 	/* A clock that was set back, or another log: begin anew after two seconds' worth of doubt. */
-	if (!bus_utime_ok(state->utime) || (state->utime <= c->last_frame && c->last_frame - state->utime < 2000000))
+	if (state->utime <= c->last_frame && c->last_frame - state->utime < 2000000)
 		return false;
-	if (!layout_from_message(&layout, state))
-		return false;
+	layout_from_message(&layout, state);
 	c->last_frame = state->utime;
 	bool seen = state->calibration != 0;
 	enum stability_verdict verdict = stability_frame(&c->stability, seen ? &layout : NULL, state->occluded != 0);

@@ -46,7 +46,8 @@ struct controller {
 };
 
 void controller_init(struct controller *c, const struct config *config);
-/* Each returns false when the message is outdated or not acceptable; now: s, monotonic. */
+/* Messages that passed message_check(); plans are held against the table here (plan_check()). Each returns false when the message is outdated
+ * or not acceptable; now: s, monotonic. */
 bool controller_state(struct controller *c, const billiard_table_state_t *state, double now);
 bool controller_plan(struct controller *c, const billiard_plan_t *plan, double now);
 bool controller_command(struct controller *c, const billiard_command_t *command, double now);

@@ -3,29 +3,7 @@
 #include <math.h>
 #include <string.h>
 
-#include "physics/ball.h"
-#include "physics/event.h"
-
-/* What no table exceeds: m, m/s or m/s^2, s. Drawing then needs no care for overflow. */
-static const double PLACE_MAX = 100, SPEED_MAX = 1000, TIME_MAX = 3600;
-
-static bool in(long value, long low, long high)
-{
-	return value >= low && value <= high;
-}
-
-static bool within(double value, double limit)
-{
-	return fabs(value) <= limit; /* false for NaN */
-}
-
-static bool keyframe_ok(const billiard_keyframe_t *k, int ball_count)
-{
-	return in(k->ball, 0, ball_count - 1) && in(k->phase, 0, BALL_POTTED) &&
-	       in(k->event, 0, EVENT_KIND_COUNT - 1) && k->begin >= 0 && k->begin <= k->end && k->end <= TIME_MAX &&
-	       within(k->x, PLACE_MAX) && within(k->y, PLACE_MAX) && within(k->vx, SPEED_MAX) &&
-	       within(k->vy, SPEED_MAX) && within(k->ax, SPEED_MAX) && within(k->ay, SPEED_MAX);
-}
+#include "app/light/keyframe.h"
 
 bool animation_same_motion(const billiard_animation_t *a, const billiard_animation_t *b)
 {
@@ -49,16 +27,12 @@ double animation_position(const billiard_animation_t *animation, double elapsed)
 	return period > 0 ? fmin(fmod(animation->position + animation->rate * elapsed, period), length) : 0;
 }
 
-bool animation_check(const billiard_animation_t *a)
+bool animation_check(const billiard_animation_t *animation)
 {
-	bool ok = in(a->keyframe_count, 0, ANIMATION_KEYFRAMES) && in(a->ball_count, 0, BALL_MAX) && a->rate >= 0 &&
-		  a->rate <= 100 && a->pause >= 0 && a->pause <= TIME_MAX && a->position >= 0 &&
-		  a->position <= TIME_MAX && a->ball_radius >= 0 && a->ball_radius < 1;
-	for (int i = 0; ok && i < a->ball_count; i++)
-		ok = in(a->colours[i], 0, COLOUR_COUNT - 1);
-	for (int i = 0; ok && i < a->keyframe_count; i++)
-		ok = keyframe_ok(&a->keyframes[i], a->ball_count);
-	return ok;
+	for (int i = 0; i < animation->keyframe_count; i++)
+		if (!keyframe_check(&animation->keyframes[i], animation->ball_count))
+			return false;
+	return true;
 }
 
 bool animation_take(struct animation *animation, const billiard_animation_t *message, double now, bool *changed)

@@ -7,9 +7,7 @@
 
 #include "lcmtypes/billiard_animation_t.h"
 
-enum { ANIMATION_KEYFRAMES = 768 };
-
-/* True when counts and indices are in range and all numbers finite: to be called on every animation from the wire. */
+/* True when the keyframes of an animation that the bus let through agree with its balls: to be called on every animation from the wire. */
 bool animation_check(const billiard_animation_t *message);
 /* True when both move the same balls in the same way. */
 bool animation_same_motion(const billiard_animation_t *a, const billiard_animation_t *b);

@@ -35,13 +35,13 @@ double draw_text_width(const char *text, double height);
 /* Light that stands for a ball of that colour, 0xRRGGBBFF; never black, which a projector cannot show. */
 uint32_t draw_ball_rgba(int colour);
 
-/* True when counts and indices are in range and all numbers finite: to be called on every list from the wire. */
+/* True when a list whose numbers the bus let through (message_check()) agrees with itself: to be called on every list from the wire. */
 bool draw_check(const billiard_draw_list_t *list);
 
 /* One shot of a proposal: halos on the balls it is played from, ghost ball, solid paths of cue and object ball, dashed paths
  * of the others, a mark at the pocket, speed and pocket as text. shot indexes plan->entries[entry].shots. table: for radius
- * and pockets. No light falls on or next to a ball: the camera has to see its outline. A plan from the wire whose indices
- * are out of range leaves the list without what they name. */
+ * and pockets. No light falls on or next to a ball: the camera has to see its outline. plan: one
+ * that plan_check() accepted. */
 void draw_proposal(billiard_draw_list_t *list, const struct table *table, const billiard_plan_t *plan, int entry,
 		   int shot, const struct draw_options *options);
 /* Halos only (no proposal), and a line of text at the bottom (empty: none). */

@@ -1,26 +1,13 @@
 #include "app/light/draw_path.h"
 
+#include "app/light/keyframe.h"
 #include "physics/event.h"
 
 /* Farthest a line may lie from the parabola that it stands for, m. */
 static const double FLATNESS = 0.001;
 /* Points closer than this to the last one are left out, m. */
 static const double SPACING = 0.0005;
-static const double TIME_MAX = 600; /* s: no shot lasts longer */
 enum { DEPTH_MAX = 6 };
-
-static bool keyframe_ok(const billiard_keyframe_t *key)
-{
-	vec2 pos = {key->x, key->y}, vel = {key->vx, key->vy}, acc = {key->ax, key->ay};
-	return vec2_is_finite(pos) && vec2_is_finite(vel) && vec2_is_finite(acc) && vec2_norm(pos) < 100 &&
-	       vec2_norm(vel) < 100 && vec2_norm(acc) < 100 && key->begin >= 0 && key->end >= key->begin &&
-	       key->end <= TIME_MAX;
-}
-
-static vec2 keyframe_at(const billiard_keyframe_t *key, double s)
-{
-	return (vec2){key->x + key->vx * s + key->ax * s * s / 2, key->y + key->vy * s + key->ay * s * s / 2};
-}
 
 static void add(struct draw_path *path, vec2 point)
 {
@@ -61,13 +48,9 @@ void draw_path_of(struct draw_path *path, const billiard_plan_t *plan, const bil
 {
 	path->count = 0;
 	path->contact = -1;
-	if (shot->keyframe_first < 0 || shot->keyframe_count < 0 || plan->keyframe_count < 0 ||
-	    plan->keyframe_count > 768 || shot->keyframe_first > plan->keyframe_count ||
-	    shot->keyframe_count > plan->keyframe_count - shot->keyframe_first)
-		return;
 	for (int i = 0; i < shot->keyframe_count; i++) {
 		const billiard_keyframe_t *key = &plan->keyframes[shot->keyframe_first + i];
-		if (key->ball != ball || !keyframe_ok(key))
+		if (key->ball != ball)
 			continue;
 		add(path, keyframe_at(key, 0));
 		if (key->event == EVENT_BALL_BALL && path->contact < 0)

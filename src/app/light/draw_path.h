@@ -13,7 +13,7 @@ struct draw_path {
 	int contact; /* index of the point at the first ball contact, -1 none */
 };
 
-/* Path of a ball in the shot's keyframes, from where it starts to move. Keyframes with bad numbers are passed over. */
+/* Path of a ball in the keyframes of a shot of a checked plan, from where it starts to move. */
 void draw_path_of(struct draw_path *path, const billiard_plan_t *plan, const billiard_plan_shot_t *shot, int ball);
 
 #endif

@@ -64,9 +64,7 @@ static void draw_info(const struct draw_field *field, billiard_draw_list_t *list
 
 static bool ball_lies(const struct scene *scene, int ball)
 {
-	return ball >= 0 && ball < scene->ball_count && scene->shot->start_on[ball] &&
-	       isfinite(scene->shot->start_x[ball]) && isfinite(scene->shot->start_y[ball]) &&
-	       fabs(scene->shot->start_x[ball]) < 10 && fabs(scene->shot->start_y[ball]) < 10;
+	return ball >= 0 && scene->shot->start_on[ball];
 }
 
 static vec2 ball_start(const struct scene *scene, int ball)
@@ -149,12 +147,12 @@ static void draw_without_keyframes(const struct scene *scene, int cue)
 {
 	int target = scene->shot->target, pocket = scene->shot->pocket;
 	double angle = scene->shot->angle;
-	if (ball_lies(scene, cue) && isfinite(angle)) {
+	if (ball_lies(scene, cue)) {
 		vec2 from = ball_start(scene, cue);
 		vec2 aim[2] = {from, vec2_madd(from, scene->table->width / 2, vec2_from_angle(angle))};
 		stroke(scene, aim, 2, &(struct draw_pen){LINE, CUE_RGBA, false});
 	}
-	if (scene->shot->rails == 0 && ball_lies(scene, target) && pocket >= 0 && pocket < scene->table->pocket_count) {
+	if (scene->shot->rails == 0 && ball_lies(scene, target) && pocket >= 0) {
 		vec2 way[2] = {ball_start(scene, target), scene->table->pocket[pocket].centre};
 		stroke(scene, way, 2, &(struct draw_pen){LINE, draw_ball_rgba(scene->plan->colours[target]), false});
 	}
@@ -197,7 +195,7 @@ static void draw_pocket_arc(const struct scene *scene, const struct pocket *pock
 static void draw_pocket(const struct scene *scene)
 {
 	int pocket = scene->shot->pocket, target = scene->shot->target;
-	if (pocket < 0 || pocket >= scene->table->pocket_count)
+	if (pocket < 0)
 		return;
 	uint32_t rgba = ball_lies(scene, target) ? draw_ball_rgba(scene->plan->colours[target]) : GHOST_RGBA;
 	draw_pocket_arc(scene, &scene->table->pocket[pocket], &(struct draw_pen){2 * LINE, rgba, false});
@@ -207,16 +205,15 @@ static void draw_pocket(const struct scene *scene)
  * pocket. */
 static void draw_labels(const struct scene *scene, int number, int shots)
 {
-	char text[64];
+	char text[64], which[24] = "";
 	int pocket = scene->shot->pocket, cue = cue_ball(scene);
-	int length =
-		snprintf(text, sizeof(text), "%.1f m/s  %.0f\u00b0", scene->shot->speed, scene->shot->angle * RADIAN);
 	if (shots > 1)
-		snprintf(text + length, sizeof(text) - (size_t)length, "  %d/%d", number, shots);
+		snprintf(which, sizeof(which), "  %d/%d", number, shots);
+	snprintf(text, sizeof(text), "%.1f m/s  %.0f\u00b0%s", scene->shot->speed, scene->shot->angle * RADIAN, which);
 	vec2 at_cue = ball_lies(scene, cue) ? ball_start(scene, cue) : (vec2){0, 0};
 	draw_field_text(&scene->field, scene->list,
 			&(struct draw_label){text, at_cue, TEXT_REACH, TEXT_HEIGHT, TEXT_RGBA});
-	if (pocket < 0 || pocket >= scene->table->pocket_count)
+	if (pocket < 0)
 		return;
 	const struct pocket *p = &scene->table->pocket[pocket];
 	draw_field_text(&scene->field, scene->list,
@@ -234,28 +231,12 @@ static void draw_infos(const struct scene *scene)
 	}
 }
 
-static bool scene_find_shot(struct scene *scene, int entry, int shot)
-{
-	const billiard_plan_t *plan = scene->plan;
-	if (entry < 0 || entry >= plan->entry_count || entry >= (int)(sizeof(plan->entries) / sizeof(plan->entries[0])))
-		return false;
-	const billiard_plan_entry_t *e = &plan->entries[entry];
-	if (shot < 0 || shot >= e->shot_count || shot >= (int)(sizeof(e->shots) / sizeof(e->shots[0])))
-		return false;
-	if (plan->ball_count < 0 || plan->ball_count > BALL_MAX)
-		return false;
-	scene->shot = &e->shots[shot];
-	scene->ball_count = plan->ball_count;
-	return true;
-}
-
 void draw_proposal(billiard_draw_list_t *list, const struct table *table, const billiard_plan_t *plan, int entry,
 		   int shot, const struct draw_options *options)
 {
-	struct scene scene = {.list = list, .table = table, .plan = plan, .options = options};
+	const billiard_plan_entry_t *shots = &plan->entries[entry];
+	struct scene scene = {list, table, plan, &shots->shots[shot], options, {0}, plan->ball_count};
 	draw_clear(list);
-	if (!scene_find_shot(&scene, entry, shot))
-		return;
 	list->plan_id = plan->request_id;
 	draw_field_init(&scene.field, table);
 	for (int i = 0; i < scene.ball_count; i++)
@@ -267,8 +248,8 @@ void draw_proposal(billiard_draw_list_t *list, const struct table *table, const 
 		draw_halos(&scene.field, list);
 	draw_pocket(&scene);
 	draw_paths(&scene);
-	if (scene.shot->speed > 0 && scene.shot->speed < 100 && isfinite(scene.shot->angle))
-		draw_labels(&scene, shot + 1, plan->entries[entry].shot_count);
+	if (scene.shot->speed > 0)
+		draw_labels(&scene, shot + 1, shots->shot_count);
 	if (options->info)
 		draw_infos(&scene);
 }

@@ -9,8 +9,8 @@
 #include <string.h>
 
 #include "app/process/text.h"
-#include "app/process/bus.h"
 #include "app/light/draw.h"
+#include "app/light/keyframe.h"
 #include "app/light/picture.h"
 
 /* Names: px_ is a place in the picture, everything else is in table metres. */
@@ -183,10 +183,9 @@ static void draw_layers(const struct render *render, const billiard_draw_list_t 
 
 bool render_animated(const billiard_animation_t *animation, int ball, double t, vec2 *pos)
 {
-	enum { KEYFRAMES = sizeof(animation->keyframes) / sizeof(animation->keyframes[0]) };
 	const billiard_keyframe_t *last = NULL;
 	bool moved = false;
-	for (int i = 0; i < animation->keyframe_count && i < KEYFRAMES; i++) {
+	for (int i = 0; i < animation->keyframe_count; i++) {
 		const billiard_keyframe_t *key = &animation->keyframes[i];
 		if (key->ball != ball || key->begin > t)
 			continue;
@@ -196,9 +195,8 @@ bool render_animated(const billiard_animation_t *animation, int ball, double t, 
 	}
 	if (!moved || last->phase == BALL_POTTED)
 		return false;
-	double s = fmax(0, fmin(t, last->end) - last->begin);
-	*pos = (vec2){last->x + last->vx * s + last->ax * s * s / 2, last->y + last->vy * s + last->ay * s * s / 2};
-	return vec2_is_finite(*pos);
+	*pos = keyframe_at(last, fmax(0, fmin(t, last->end) - last->begin));
+	return true;
 }
 
 static void draw_animation(const struct render *render, const billiard_animation_t *animation, double t)
@@ -206,7 +204,7 @@ static void draw_animation(const struct render *render, const billiard_animation
 	double radius = animation->ball_radius;
 	if (!(radius > 0 && radius < 1))
 		return;
-	for (int ball = 0; ball < animation->ball_count && ball < BALL_MAX; ball++) {
+	for (int ball = 0; ball < animation->ball_count; ball++) {
 		vec2 pos;
 		if (!render_animated(animation, ball, t, &pos))
 			continue;
@@ -282,7 +280,6 @@ void render_destroy(struct render *render)
 void render_draw(struct render *render, const billiard_draw_list_t *list, const billiard_animation_t *animation,
 		 double t)
 {
-	assert(draw_check(list) && isfinite(t));
 	cairo_set_source_rgb(render->cairo, 0, 0, 0);
 	cairo_paint(render->cairo);
 	draw_layers(render, list);

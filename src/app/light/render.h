@@ -10,8 +10,8 @@ struct render; /* opaque: surface and font */
 /* 0, -EINVAL, -ENOMEM; *out NULL on failure. Caller destroys. */
 int render_create(struct render **out, const struct config_projector *projector, char *err, size_t err_size);
 void render_destroy(struct render *render); /* NULL is fine */
-/* Draws the list, which draw_check() must have accepted, and over it the animated balls at time t (s since the strike)
- * unless animation is NULL. Black where nothing is. */
+/* Draws the list, which draw_check() must have accepted, and over it the balls of the animation, which animation_check() must have accepted,
+ * at time t (s since the strike); NULL: none. Black where nothing is. */
 void render_draw(struct render *render, const billiard_draw_list_t *list, const billiard_animation_t *animation,
 		 double t);
 /* The picture: 32-bit xRGB in native order, rows from the top, stride in bytes; borrowed until the next render_draw(). */

@@ -32,6 +32,13 @@ static double thread_seconds(void)
 	return (double)t.tv_sec + 1e-9 * (double)t.tv_nsec;
 }
 
+/* A request as it came, as the search takes it, and when (s, monotonic). */
+struct asked {
+	billiard_plan_request_t message;
+	struct plan_request request;
+	double time;
+};
+
 struct planner_service {
 	const struct config *config; /* borrowed */
 	struct planner *planner;     /* owned */
@@ -47,8 +54,7 @@ struct planner_service {
 	bool has_request, busy;
 	uint64_t run; /* number of the running or last search */
 	int64_t present_id; /* newest id taken */
-	billiard_plan_request_t request;
-	double request_time; /* s, monotonic */
+	struct asked asked;
 	billiard_plan_t answer[ANSWER_MAX];
 	int answer_count;
 	billiard_plan_t last; /* the last answer to present_id, for repeated requests; request_id 0: none yet */
@@ -131,20 +137,14 @@ static void on_progress(void *context, const struct plan_result *result)
 	send_plan(search, false);
 }
 
-static void run_search(struct planner_service *service, const billiard_plan_request_t *message, uint64_t run,
-		       double request_time)
+static void run_search(struct planner_service *service, struct asked *asked)
 {
 	char err[sizeof service->draft.reason] = "";
-	struct search search = {service, 0, request_time, clock_seconds(), 0};
-	struct plan_request request;
+	struct search search = {service, 0, asked->time, clock_seconds(), 0};
 	struct plan_result result = {0};
-	plan_message_begin(&service->draft, message);
-	int r = plan_request_from_message(&request, message, &service->config->table, err, sizeof err);
-	request.run = run;
-	if (r == 0)
-		spend(&request, request_time);
-	if (r == 0)
-		r = planner_run(service->planner, &request, on_progress, &search, &result, err, sizeof err);
+	plan_message_begin(&service->draft, &asked->message);
+	spend(&asked->request, asked->time);
+	int r = planner_run(service->planner, &asked->request, on_progress, &search, &result, err, sizeof err);
 	if (r == -EINVAL) {
 		service->draft.status = PLAN_MESSAGE_REFUSED;
 		service->draft.entry_count = 0;
@@ -168,21 +168,20 @@ static void run_search(struct planner_service *service, const billiard_plan_requ
 static void *search_thread(void *context)
 {
 	struct planner_service *service = context;
-	billiard_plan_request_t request;
+	struct asked asked;
 	pthread_mutex_lock(&service->lock);
 	while (!service->stop) {
 		if (!service->has_request) {
 			pthread_cond_wait(&service->wake, &service->lock);
 			continue;
 		}
-		request = service->request;
-		double request_time = service->request_time;
+		asked = service->asked;
 		service->has_request = false;
 		service->busy = true;
-		uint64_t run = ++service->run;
+		asked.request.run = ++service->run;
 		pthread_mutex_unlock(&service->lock);
 		double began = clock_seconds(), cpu = thread_seconds();
-		run_search(service, &request, run, request_time);
+		run_search(service, &asked);
 		pthread_mutex_lock(&service->lock);
 		service->figures.searched += clock_seconds() - began;
 		service->figures.manager += thread_seconds() - cpu;
@@ -294,54 +293,59 @@ static void drop_present(struct planner_service *service)
 		planner_cancel(service->planner, service->run);
 		return;
 	}
-	answer_without_search(service, &service->request, PLAN_MESSAGE_CANCELLED, REPLACED);
+	answer_without_search(service, &service->asked.message, PLAN_MESSAGE_CANCELLED, REPLACED);
 	service->figures.cancelled++;
 	service->has_request = false;
 }
 
-/* A request that cannot be searched does not end one that can. Locked by the caller. */
-static bool refuse(struct planner_service *service, const billiard_plan_request_t *request)
+/* Locked by the caller. */
+static void answer_refused(struct planner_service *service, const billiard_plan_request_t *request, const char *reason)
 {
-	struct plan_request unused;
-	char reason[sizeof service->draft.reason];
-	if (plan_request_from_message(&unused, request, &service->config->table, reason, sizeof reason) == 0)
-		return false;
 	answer_without_search(service, request, PLAN_MESSAGE_REFUSED, reason);
 	service->figures.refused++;
-	return true;
 }
 
-static void take(struct planner_service *service, const billiard_plan_request_t *request)
+/* Locked by the caller. */
+static void take(struct planner_service *service, const struct asked *asked)
 {
 	drop_present(service);
 	service->figures.requests++;
-	service->present_id = request->id;
+	service->present_id = asked->message.id;
 	service->last.request_id = 0;
-	service->request = *request;
-	service->request_time = clock_seconds();
+	service->asked = *asked;
 	service->has_request = true;
 	pthread_cond_signal(&service->wake);
+}
+
+void planner_service_refuse(struct planner_service *service, const billiard_plan_request_t *request, const char *reason)
+{
+	pthread_mutex_lock(&service->lock);
+	answer_refused(service, request, reason);
+	pthread_mutex_unlock(&service->lock);
 }
 
 bool planner_service_request(struct planner_service *service, const billiard_plan_request_t *request)
 {
 	bool accepted = true;
+	struct asked asked = {.message = *request, .time = clock_seconds()};
+	char reason[sizeof service->draft.reason];
+	int r = plan_request_from_message(&asked.request, request, &service->config->table, reason, sizeof reason);
 	pthread_mutex_lock(&service->lock);
 	bool idle = !service->busy && !service->has_request;
 	bool recent = clock_seconds() - service->last_time < OUTDATED;
-	if (refuse(service, request)) {
-		/* answered */
+	if (r < 0) {
+		/* A request that cannot be searched does not end one that can. */
+		answer_refused(service, request, reason);
 	} else if (request->id > service->present_id) {
-		take(service, request);
+		take(service, &asked);
 	} else if (request->id == service->present_id) {
 		/* Asked again: it runs, or its last answer was lost. */
 		if (service->last.request_id == request->id && service->last.is_final)
 			post(service, &service->last);
 	} else if (idle && !recent) {
 		/* Not late: the asker's clock was set back, or a recording is replayed. */
-		take(service, request);
+		take(service, &asked);
 	} else {
-		char reason[sizeof service->draft.reason];
 		snprintf(reason, sizeof reason, "outdated: request %lld came after it", (long long)service->present_id);
 		answer_without_search(service, request, PLAN_MESSAGE_CANCELLED, reason);
 		service->figures.outdated++;

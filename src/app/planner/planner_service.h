@@ -25,10 +25,13 @@ void planner_service_destroy(struct planner_service *service); /* NULL is fine; 
 /* Readable when answers wait. */
 int planner_service_descriptor(const struct planner_service *service);
 
-/* A request: replaces the one that runs (which ends with a final answer marked cancelled); the same id again is
+/* A request that passed message_check(): replaces the one that runs (which ends with a final answer marked cancelled); the same id again is
  * answered with the last answer, or goes on. False when it is older than the present one, unless that has been answered
  * for two seconds: it is outdated and gets a final answer marked cancelled that says so. */
 bool planner_service_request(struct planner_service *service, const billiard_plan_request_t *request);
+/* Answers a request that did not pass, with the reason; its id is that of the answer, its other numbers mean nothing. */
+void planner_service_refuse(struct planner_service *service, const billiard_plan_request_t *request,
+			    const char *reason);
 /* Ends the search for that id, if it runs. */
 void planner_service_cancel(struct planner_service *service, int64_t id);
 

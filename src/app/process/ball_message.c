@@ -1,7 +1,5 @@
 #include "app/process/ball_message.h"
 
-#include <math.h>
-
 #include "app/process/text.h"
 
 void ball_to_message(billiard_ball_t *out, const struct ball *ball, const char *name, int track)
@@ -19,15 +17,10 @@ void ball_to_message(billiard_ball_t *out, const struct ball *ball, const char *
 	text_set(out->name, sizeof out->name, name);
 }
 
-bool ball_from_message(struct ball *out, const billiard_ball_t *ball)
+struct ball ball_from_message(const billiard_ball_t *message)
 {
-	if (ball->colour < 0 || ball->colour >= COLOUR_COUNT || ball->phase < 0 || ball->phase > BALL_POTTED)
-		return false;
-	struct ball b = ball_at((enum ball_colour)ball->colour, (vec2){ball->x, ball->y});
-	b.vel = (vec2){ball->vx, ball->vy};
-	b.phase = (enum ball_phase)ball->phase;
-	if (!ball_is_finite(&b) || fabs(b.pos.x) > 100 || fabs(b.pos.y) > 100)
-		return false;
-	*out = b;
-	return true;
+	struct ball ball = ball_at((enum ball_colour)message->colour, (vec2){message->x, message->y});
+	ball.vel = (vec2){message->vx, message->vy};
+	ball.phase = (enum ball_phase)message->phase;
+	return ball;
 }

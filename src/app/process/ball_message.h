@@ -5,9 +5,9 @@
 #include "lcmtypes/billiard_ball_t.h"
 #include "physics/ball.h"
 
-/* Ball of a message; its numbers are not checked. */
+/* name: cut to fit; track: identity over frames, 0 none. */
 void ball_to_message(billiard_ball_t *out, const struct ball *ball, const char *name, int track);
-/* False when a number is not finite or out of range. */
-bool ball_from_message(struct ball *out, const billiard_ball_t *ball);
+/* The ball of a message that passed message_check(). */
+struct ball ball_from_message(const billiard_ball_t *message);
 
 #endif

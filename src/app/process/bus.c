@@ -9,20 +9,18 @@
 #include <string.h>
 #include <sys/socket.h>
 #include <unistd.h>
+#include "app/process/message_table.h"
 #include "app/process/text.h"
 
 enum { DRAIN_MAX = 1000 }; /* messages handled at a time */
 
 struct subscription {
 	struct bus *bus;
-	const struct bus_type *type;
-	enum bus_delivery delivery;
-	bus_handler *handler;
-	void *context;
-	void *message,
-		*spare; /* owned, type->size bytes each; spare: decoded into, so that a bad message spoils no good one */
-	bool pending;	/* BUS_LATEST: message waits for the end of the drain */
-	size_t bytes;	/* of message, encoded */
+	struct bus_subscription def;
+	/* Owned, type->size bytes each; spare: decoded into, so that a bad message spoils no good one. */
+	void *message, *spare;
+	bool pending; /* BUS_LATEST: message waits for the end of the drain */
+	size_t bytes; /* of message, encoded */
 	char channel[64];
 };
 
@@ -35,7 +33,9 @@ struct bus {
 	size_t buffer_size;
 	bool is_file;
 	int64_t received, ignored;
-	char last_ignored[128];
+	char last_ignored[192];
+	bus_ignored_handler *on_ignored; /* may be NULL */
+	void *on_ignored_context;
 };
 
 /* ---- types ---------------------------------------------------------------------------------------------------------- */
@@ -58,9 +58,10 @@ struct bus {
 	{                                                                                                              \
 		return billiard_##x##_decode_cleanup(message);                                                         \
 	}
-#define TYPE(x, checker)                                                                                               \
+#define TYPE(x, checker, table)                                                                                        \
 	{                                                                                                              \
-#x, sizeof(billiard_##x), x##_decode_any, x##_size_any, x##_encode_any, x##_cleanup_any, checker       \
+#x, sizeof(billiard_##x), x##_decode_any, x##_size_any, x##_encode_any, x##_cleanup_any, checker,      \
+			table                                                                                          \
 	}
 
 TYPE_WRAPPERS(image_t)
@@ -84,14 +85,14 @@ static bool image_size_fits(const void *bytes, size_t size)
 	return n > 0 && n <= BUS_IMAGE_MAX && size == FIXED + (size_t)n;
 }
 
-const struct bus_type bus_image = TYPE(image_t, image_size_fits);
-const struct bus_type bus_table_state = TYPE(table_state_t, NULL);
-const struct bus_type bus_plan_request = TYPE(plan_request_t, NULL);
-const struct bus_type bus_plan = TYPE(plan_t, NULL);
-const struct bus_type bus_draw_list = TYPE(draw_list_t, NULL);
-const struct bus_type bus_animation = TYPE(animation_t, NULL);
-const struct bus_type bus_command = TYPE(command_t, NULL);
-const struct bus_type bus_status = TYPE(status_t, NULL);
+const struct bus_type bus_image = TYPE(image_t, image_size_fits, &message_image);
+const struct bus_type bus_table_state = TYPE(table_state_t, NULL, &message_table_state);
+const struct bus_type bus_plan_request = TYPE(plan_request_t, NULL, &message_plan_request);
+const struct bus_type bus_plan = TYPE(plan_t, NULL, &message_plan);
+const struct bus_type bus_draw_list = TYPE(draw_list_t, NULL, &message_draw_list);
+const struct bus_type bus_animation = TYPE(animation_t, NULL, &message_animation);
+const struct bus_type bus_command = TYPE(command_t, NULL, &message_command);
+const struct bus_type bus_status = TYPE(status_t, NULL, &message_status);
 
 /* ---- opening -------------------------------------------------------------------------------------------------------- */
 
@@ -173,7 +174,7 @@ void bus_close(struct bus *bus)
 	for (int i = 0; i < bus->subscription_count; i++) {
 		struct subscription *s = &bus->subscription[i];
 		if (s->pending)
-			s->type->cleanup(s->message);
+			s->def.type->cleanup(s->message);
 		free(s->message);
 		free(s->spare);
 	}
@@ -184,57 +185,85 @@ void bus_close(struct bus *bus)
 
 /* ---- receiving ------------------------------------------------------------------------------------------------------ */
 
-static void ignore(struct bus *bus, const char *channel, const char *why, size_t size)
+static void ignore(struct bus *bus, const struct bus_ignored *ignored)
 {
 	bus->ignored++;
-	snprintf(bus->last_ignored, sizeof bus->last_ignored, "%.40s: %s, %zu bytes", channel, why, size);
+	snprintf(bus->last_ignored, sizeof bus->last_ignored, "%.40s: %s", ignored->channel, ignored->reason);
+	if (bus->on_ignored)
+		bus->on_ignored(bus->on_ignored_context, ignored);
+}
+
+static void ignore_malformed(struct bus *bus, const char *channel, const char *why, size_t size)
+{
+	char reason[64];
+	snprintf(reason, sizeof reason, "%s, %zu bytes", why, size);
+	ignore(bus, &(struct bus_ignored){channel, BUS_MALFORMED, reason, NULL});
 }
 
 static void deliver(struct subscription *s)
 {
+	char reason[64];
 	s->pending = false;
-	if (!s->handler(s->context, s->message))
-		ignore(s->bus, s->channel, "out of range or outdated", s->bytes);
-	s->type->cleanup(s->message);
+	if (!s->def.handler(s->def.context, s->message)) {
+		snprintf(reason, sizeof reason, "contradictory or outdated, %zu bytes", s->bytes);
+		ignore(s->bus, &(struct bus_ignored){s->channel, BUS_REFUSED, reason, s->message});
+	}
+	s->def.type->cleanup(s->message);
+}
+
+/* Into s->spare. False when it is no message of the type, or one that its table does not allow: then it has been ignored. */
+static bool decode(struct subscription *s, const char *channel, const void *bytes, size_t size)
+{
+	const struct bus_type *type = s->def.type;
+	char reason[128];
+	if (type->check && !type->check(bytes, size)) {
+		ignore_malformed(s->bus, channel, "malformed", size);
+		return false;
+	}
+	int used = type->decode(bytes, 0, (int)size, s->spare);
+	if (used < 0) {
+		ignore_malformed(s->bus, channel, "foreign or malformed", size);
+		return false;
+	}
+	bool whole = (size_t)used == size;
+	if (!whole)
+		ignore_malformed(s->bus, channel, "too long", size);
+	else if (message_check(type->table, s->spare, reason, sizeof reason))
+		return true;
+	else
+		ignore(s->bus, &(struct bus_ignored){channel, BUS_RANGE, reason, s->spare});
+	type->cleanup(s->spare);
+	return false;
 }
 
 static void on_message(const lcm_recv_buf_t *rbuf, const char *channel, void *user)
 {
 	struct subscription *s = user;
-	struct bus *bus = s->bus;
-	if (s->type->check && !s->type->check(rbuf->data, rbuf->data_size)) {
-		ignore(bus, channel, "malformed", rbuf->data_size);
+	if (!decode(s, channel, rbuf->data, rbuf->data_size))
 		return;
-	}
-	int used = s->type->decode(rbuf->data, 0, (int)rbuf->data_size, s->spare);
-	if (used < 0 || (uint32_t)used != rbuf->data_size) {
-		if (used >= 0)
-			s->type->cleanup(s->spare);
-		ignore(bus, channel, used < 0 ? "foreign or malformed" : "too long", rbuf->data_size);
-		return;
-	}
-	bus->received++;
+	s->bus->received++;
 	if (s->pending)
-		s->type->cleanup(s->message);
+		s->def.type->cleanup(s->message);
 	void *message = s->spare;
 	s->spare = s->message;
 	s->message = message;
 	s->pending = true;
 	s->bytes = rbuf->data_size;
-	if (s->delivery == BUS_EACH)
+	if (s->def.delivery == BUS_EACH)
 		deliver(s);
 }
 
-int bus_subscribe(struct bus *bus, const char *channel, const struct bus_type *type, enum bus_delivery delivery,
-		  bus_handler *handler, void *context)
+int bus_subscribe(struct bus *bus, const struct bus_subscription *subscription)
 {
 	if (bus->subscription_count == BUS_SUBSCRIPTION_MAX)
 		return -ENOSPC;
+	size_t size = subscription->type->size;
 	struct subscription *s = &bus->subscription[bus->subscription_count];
 	*s = (struct subscription){
-		bus, type, delivery, handler, context, calloc(1, type->size), calloc(1, type->size), false, 0, ""};
-	snprintf(s->channel, sizeof s->channel, "%s", channel);
-	lcm_subscription_t *l = s->message && s->spare ? lcm_subscribe(bus->lcm, channel, on_message, s) : NULL;
+		.bus = bus, .def = *subscription, .message = calloc(1, size), .spare = calloc(1, size)};
+	snprintf(s->channel, sizeof s->channel, "%s", subscription->channel);
+	s->def.channel = s->channel;
+	lcm_subscription_t *l = s->message && s->spare ? lcm_subscribe(bus->lcm, s->channel, on_message, s) : NULL;
 	if (!l) {
 		free(s->message);
 		free(s->spare);
@@ -244,6 +273,12 @@ int bus_subscribe(struct bus *bus, const char *channel, const struct bus_type *t
 	lcm_subscription_set_queue_capacity(l, 0);
 	bus->subscription_count++;
 	return 0;
+}
+
+void bus_on_ignored(struct bus *bus, bus_ignored_handler *handler, void *context)
+{
+	bus->on_ignored = handler;
+	bus->on_ignored_context = context;
 }
 
 static void deliver_latest(struct bus *bus)
@@ -283,11 +318,6 @@ int bus_publish(struct bus *bus, const char *channel, const struct bus_type *typ
 out:
 	pthread_mutex_unlock(&bus->lock);
 	return r;
-}
-
-bool bus_utime_ok(int64_t utime)
-{
-	return utime >= 0 && utime <= (int64_t)1 << 53;
 }
 
 int bus_descriptor(struct bus *bus)

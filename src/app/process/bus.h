@@ -7,6 +7,7 @@
 #include <stddef.h>
 #include <stdint.h>
 
+#include "app/process/message_check.h"
 #include "lcmtypes/billiard_animation_t.h"
 #include "lcmtypes/billiard_command_t.h"
 #include "lcmtypes/billiard_draw_list_t.h"
@@ -18,7 +19,8 @@
 
 enum { BUS_SUBSCRIPTION_MAX = 8, BUS_IMAGE_MAX = 8 << 20 };
 
-/* How one message type is coded. check (may be NULL) sees the raw bytes before anything is decoded. */
+/* How one message type is coded. check (may be NULL) sees the raw bytes before anything is decoded; what does not pass the table is not
+ * delivered. */
 struct bus_type {
 	const char *name;
 	size_t size;
@@ -27,17 +29,42 @@ struct bus_type {
 	int (*encode)(void *bytes, int offset, int max, const void *message);
 	int (*cleanup)(void *message);
 	bool (*check)(const void *bytes, size_t size);
+	const struct message_table *table;
 };
 extern const struct bus_type bus_image, bus_table_state, bus_plan_request, bus_plan, bus_draw_list, bus_animation,
 	bus_command, bus_status;
 
-/* message is borrowed until the handler returns. False: not acceptable (outdated, out of range); it is counted as ignored. */
+/* message has passed its type's table; borrowed until the handler returns. False: not acceptable (outdated, contradictory); it is counted
+ * as ignored. */
 typedef bool bus_handler(void *context, const void *message);
 
 enum bus_delivery {
 	BUS_EACH,  /* every message, in order */
 	BUS_LATEST /* of those that wait, only the newest: for messages that are dear to handle. A newest that the handler refuses costs the others */
 };
+
+struct bus_subscription {
+	const char *channel; /* a name, or a regular expression of LCM */
+	const struct bus_type *type;
+	enum bus_delivery delivery;
+	bus_handler *handler;
+	void *context; /* of the handler */
+};
+
+/* Why a message was ignored. */
+enum bus_fault {
+	BUS_MALFORMED, /* no message of this type: foreign, cut, too long */
+	BUS_RANGE,     /* a number that the type's table does not allow */
+	BUS_REFUSED    /* the handler's verdict */
+};
+struct bus_ignored {
+	const char *channel;
+	enum bus_fault fault;
+	const char *reason;  /* for people, without the channel */
+	const void *message; /* as decoded; NULL for BUS_MALFORMED */
+};
+/* All borrowed until it returns. */
+typedef void bus_ignored_handler(void *context, const struct bus_ignored *ignored);
 
 struct bus; /* opaque */
 
@@ -49,14 +76,12 @@ void bus_close(struct bus *bus); /* NULL is fine */
 /* Address to use: LCM_DEFAULT_URL when it is set, else configured. */
 const char *bus_url(const char *configured);
 
-/* channel: a name, or a regular expression of LCM. 0, -ENOSPC, or -ENOMEM (also: no valid expression). */
-int bus_subscribe(struct bus *bus, const char *channel, const struct bus_type *type, enum bus_delivery delivery,
-		  bus_handler *handler, void *context);
+/* The subscription is copied. 0, -ENOSPC, or -ENOMEM (also: no valid expression). */
+int bus_subscribe(struct bus *bus, const struct bus_subscription *subscription);
+/* Tells handler of each message that is ignored, when that happens. NULL: nobody. */
+void bus_on_ignored(struct bus *bus, bus_ignored_handler *handler, void *context);
 /* 0 or -EIO. A lost message is not an error. */
 int bus_publish(struct bus *bus, const char *channel, const struct bus_type *type, const void *message);
-
-/* False for a time (us since 1970) that no clock shows: before 1970 or after 2255. */
-bool bus_utime_ok(int64_t utime);
 
 /* For the event loop: readable when messages wait. */
 int bus_descriptor(struct bus *bus);

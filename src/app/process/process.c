@@ -2,6 +2,7 @@
 
 #include <errno.h>
 #include <getopt.h>
+#include <math.h>
 #include <signal.h>
 #include <stdarg.h>
 #include <stdlib.h>
@@ -164,7 +165,7 @@ void process_metric(struct process *process, const char *name, const char *unit,
 		text_set(s->metrics[i].unit, sizeof s->metrics[i].unit, unit);
 		s->metric_count++;
 	}
-	s->metrics[i].value = value;
+	s->metrics[i].value = isfinite(value) ? value : 0; /* the border lets nothing else pass */
 }
 
 /* ---- loop ----------------------------------------------------------------------------------------------------------- */

@@ -120,9 +120,12 @@ static int setup(struct infinity *p, const struct process_options *options)
 	controller_init(&p->controller, &p->config);
 	p->process.describe = describe;
 	p->process.context = p;
-	if ((r = bus_subscribe(p->process.bus, "TABLE_STATE", &bus_table_state, BUS_EACH, on_table_state, p)) < 0 ||
-	    (r = bus_subscribe(p->process.bus, "PLAN", &bus_plan, BUS_EACH, on_plan, p)) < 0 ||
-	    (r = bus_subscribe(p->process.bus, "COMMAND", &bus_command, BUS_EACH, on_command, p)) < 0 ||
+	if ((r = bus_subscribe(p->process.bus, &(struct bus_subscription){"TABLE_STATE", &bus_table_state, BUS_EACH,
+									  on_table_state, p})) < 0 ||
+	    (r = bus_subscribe(p->process.bus, &(struct bus_subscription){"PLAN", &bus_plan, BUS_EACH, on_plan, p})) <
+		    0 ||
+	    (r = bus_subscribe(p->process.bus,
+			       &(struct bus_subscription){"COMMAND", &bus_command, BUS_EACH, on_command, p})) < 0 ||
 	    (r = process_every(&p->process, TICK_US, on_tick, p)) < 0 ||
 	    (r = process_every(&p->process, REPEAT_US, on_repeat, p)) < 0)
 		fprintf(stderr, "billiard-infinity: %s\n", strerror(-r));

@@ -9,13 +9,15 @@
 #include "app/planner/planner_service.h"
 #include "app/process/process.h"
 
+static const char REQUESTS[] = "PLAN_REQUEST";
+
 struct planner_process {
 	struct process process;
 	struct config config;
 	struct planner_service *service;
 	billiard_plan_t answer;
-	int64_t malformed, ignored; /* requests that could not be read; messages ignored before */
-	double work, work_time;	    /* nodes and simulations at the last STATUS, when that was */
+	int64_t malformed;	/* requests that could not be read */
+	double work, work_time; /* nodes and simulations at the last STATUS, when that was */
 };
 
 static bool on_request(void *context, const void *message)
@@ -49,24 +51,24 @@ static int on_answers(sd_event_source *source, int fd, uint32_t events, void *co
 	return 0;
 }
 
-/* After each turn of the loop: a request that could not be read is answered, too. Its id is not known: 0. */
-static int on_turn(sd_event_source *source, void *context)
+/* A request that could not be read is answered, too. Its id is not known: 0. */
+static void answer_malformed(struct planner_process *p, const char *reason)
 {
-	(void)source;
-	static const char CHANNEL[] = "PLAN_REQUEST: ";
-	struct planner_process *p = context;
-	const char *why = bus_last_ignored(p->process.bus);
-	int64_t ignored = bus_ignored(p->process.bus);
-	if (ignored == p->ignored)
-		return 0;
-	p->ignored = ignored;
-	if (strncmp(why, CHANNEL, sizeof CHANNEL - 1) != 0 || !strstr(why, "malformed"))
-		return 0;
 	p->malformed++;
 	p->answer = (billiard_plan_t){.utime = clock_utime(), .is_final = 1, .status = PLAN_MESSAGE_REFUSED};
-	text_set(p->answer.reason, sizeof p->answer.reason, why + sizeof CHANNEL - 1);
+	text_set(p->answer.reason, sizeof p->answer.reason, reason);
 	bus_publish(p->process.bus, "PLAN", &bus_plan, &p->answer);
-	return 0;
+}
+
+static void on_ignored(void *context, const struct bus_ignored *ignored)
+{
+	struct planner_process *p = context;
+	if (strcmp(ignored->channel, REQUESTS) != 0)
+		return;
+	if (ignored->fault == BUS_MALFORMED)
+		answer_malformed(p, ignored->reason);
+	else if (ignored->fault == BUS_RANGE)
+		planner_service_refuse(p->service, ignored->message, ignored->reason);
 }
 
 /* Expansions and simulations a second since the last STATUS. */
@@ -115,11 +117,13 @@ static int setup(struct planner_process *p, const struct process_options *option
 	}
 	p->process.describe = describe;
 	p->process.context = p;
-	if ((r = bus_subscribe(p->process.bus, "PLAN_REQUEST", &bus_plan_request, BUS_EACH, on_request, p)) < 0 ||
-	    (r = bus_subscribe(p->process.bus, "COMMAND", &bus_command, BUS_EACH, on_command, p)) < 0 ||
+	bus_on_ignored(p->process.bus, on_ignored, p);
+	if ((r = bus_subscribe(p->process.bus,
+			       &(struct bus_subscription){REQUESTS, &bus_plan_request, BUS_EACH, on_request, p})) < 0 ||
+	    (r = bus_subscribe(p->process.bus,
+			       &(struct bus_subscription){"COMMAND", &bus_command, BUS_EACH, on_command, p})) < 0 ||
 	    (r = sd_event_add_io(p->process.event, NULL, planner_service_descriptor(p->service), EPOLLIN, on_answers,
-				 p)) < 0 ||
-	    (r = sd_event_add_post(p->process.event, NULL, on_turn, p)) < 0)
+				 p)) < 0)
 		fprintf(stderr, "billiard-planner: %s\n", strerror(-r));
 	return r;
 }

@@ -125,9 +125,12 @@ static int setup(struct projector *p, const struct process_options *options)
 		process_error(&p->process, "%s", err);
 	err[0] = '\0';
 	if ((r = render_create(&p->render, c, err, sizeof err)) < 0 ||
-	    (r = bus_subscribe(p->process.bus, "DRAW", &bus_draw_list, BUS_EACH, on_draw, p)) < 0 ||
-	    (r = bus_subscribe(p->process.bus, "ANIMATION", &bus_animation, BUS_EACH, on_animation, p)) < 0 ||
-	    (r = bus_subscribe(p->process.bus, "COMMAND", &bus_command, BUS_EACH, on_command, p)) < 0 ||
+	    (r = bus_subscribe(p->process.bus,
+			       &(struct bus_subscription){"DRAW", &bus_draw_list, BUS_EACH, on_draw, p})) < 0 ||
+	    (r = bus_subscribe(p->process.bus, &(struct bus_subscription){"ANIMATION", &bus_animation, BUS_EACH,
+									  on_animation, p})) < 0 ||
+	    (r = bus_subscribe(p->process.bus,
+			       &(struct bus_subscription){"COMMAND", &bus_command, BUS_EACH, on_command, p})) < 0 ||
 	    (r = process_every(&p->process, FRAME_US, on_frame, p)) < 0)
 		fprintf(stderr, "billiard-projector: %s\n", err[0] ? err : strerror(-r));
 	return r;

@@ -253,9 +253,12 @@ static int setup(struct virtual_process *p, const struct process_options *option
 		return r;
 	uint64_t period = (uint64_t)(1e6 / p->config.virtual_table.frame_rate);
 	if ((r = create_parts(p, options, err, sizeof err)) < 0 ||
-	    (r = bus_subscribe(p->process.bus, "DRAW", &bus_draw_list, BUS_EACH, on_draw, p)) < 0 ||
-	    (r = bus_subscribe(p->process.bus, "ANIMATION", &bus_animation, BUS_EACH, on_animation, p)) < 0 ||
-	    (r = bus_subscribe(p->process.bus, "PLAN", &bus_plan, BUS_EACH, on_plan, p)) < 0 ||
+	    (r = bus_subscribe(p->process.bus,
+			       &(struct bus_subscription){"DRAW", &bus_draw_list, BUS_EACH, on_draw, p})) < 0 ||
+	    (r = bus_subscribe(p->process.bus, &(struct bus_subscription){"ANIMATION", &bus_animation, BUS_EACH,
+									  on_animation, p})) < 0 ||
+	    (r = bus_subscribe(p->process.bus, &(struct bus_subscription){"PLAN", &bus_plan, BUS_EACH, on_plan, p})) <
+		    0 ||
 	    (r = process_every(&p->process, period, on_frame, p)) < 0) {
 		fprintf(stderr, "billiard-table: %s\n", err[0] ? err : strerror(-r));
 		return r;

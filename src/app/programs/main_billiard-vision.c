@@ -109,8 +109,6 @@ static bool on_camera(void *context, const void *message)
 	struct vision_process *p = context;
 	const billiard_image_t *image = message;
 	char err[PROCESS_ERROR_SIZE];
-	if (!bus_utime_ok(image->utime))
-		return false;
 	if (image_decode(image->data, (size_t)image->size, &p->frame.image, err, sizeof err) < 0) {
 		p->bad++;
 		process_error(&p->process, "CAMERA: %s", err);
@@ -238,7 +236,8 @@ static int open_source(struct vision_process *p, const struct process_options *o
 			snprintf(err, err_size, "source: \"%.64s\" names no channel", source);
 			return -EINVAL;
 		}
-		return bus_subscribe(p->process.bus, source + 4, &bus_image, BUS_LATEST, on_camera, p);
+		return bus_subscribe(p->process.bus,
+				     &(struct bus_subscription){source + 4, &bus_image, BUS_LATEST, on_camera, p});
 	}
 	struct frame_source_def def = {source, p->config.camera.width, p->config.camera.height, FILE_FPS,
 				       options->hold};
