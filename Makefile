@@ -51,7 +51,7 @@ BENCHES := physics accuracy planner planner_bus search vision
 EVALS := physics search vision planner
 BENCH_SHARED := report plain_sim plain_sim_long vision_eval vision_eval_photos vision_eval_videos vision_eval_rendered hough_cv
 # fuzz/fuzz_NAME.c each, seeds in fuzz/corpus/NAME
-FUZZERS := position config shot_file colours image bus
+FUZZERS := position config shot_file colours image bus search
 FUZZ_SECONDS ?= 20
 LCM_TYPES := animation_t ball_t command_t draw_list_t draw_item_t image_t keyframe_t plan_t plan_entry_t plan_shot_t \
 	plan_request_t status_t metric_t table_state_t
