@@ -19,8 +19,8 @@ JOBS ?= $(shell nproc)
 
 PHYSICS := ball collide contact contact_ball_real contact_mathavan contact_stronge event inverse model motion predict queue \
 	roots sim table trace
-SEARCH := candidate cost crew figures frontier geometry plan play pool rank refine request respot \
-	rules safety scheme share_queue share_steal share_windows shot solutions step tolerance
+SEARCH := budget candidate cost crew export figures frontier geometry plan pool rank refine request respot \
+	rules safety scheme share_queue share_steal share_windows shot slot solutions start state step tolerance
 VISION := calibration camera colour detector fit linear marker_edges outline pose reason scan scan_changes scan_cloth scan_copy scan_marks scan_place seeds stabilise stages track vision
 VISION_CV := capture_cv image_io_cv markers_cv marker_image_cv
 # app: what the programs share, room by room

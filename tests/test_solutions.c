@@ -3,7 +3,7 @@
 
 #include <stdlib.h>
 
-#include "search/planner.h"
+#include "search/solutions.h"
 
 START_TEST(keeps_the_best_in_order)
 {

@@ -5,13 +5,10 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "search/export.h"
+
 static_assert(BATCH - PLAN_WORKERS_MAX + 0 >= 0, "every worker has a slot of its own");
 static_assert(FOUND_MAX - SPEEDS_MAX + 0 >= 0, "the results of one node fit");
-
-static double now(const struct planner *planner)
-{
-	return planner->def.now ? planner->def.now(planner->def.now_context) : 0;
-}
 
 /* ---- life -----------------------------------------------------------------------------------------------------------
  */
@@ -84,7 +81,7 @@ bool crew_is_over(struct crew *crew)
 {
 	if (atomic_load_explicit(&crew->over, memory_order_relaxed))
 		return true;
-	if (!search_is_over(crew->planner))
+	if (!budget_is_over(&crew->planner->budget))
 		return false;
 	pthread_mutex_lock(&crew->lock);
 	crew->cut = true;
@@ -102,9 +99,9 @@ bool crew_wait(struct crew *crew, struct worker *worker, bool (*any)(const struc
 		if (dry == crew->worker_count) {
 			crew_end(crew);
 		} else {
-			double since = now(crew->planner);
+			double since = budget_now(&crew->planner->budget);
 			pthread_cond_wait(&crew->work, &crew->lock);
-			atomic_store(&worker->waited, atomic_load(&worker->waited) + now(crew->planner) - since);
+			atomic_store(&worker->waited, atomic_load(&worker->waited) + budget_now(&crew->planner->budget) - since);
 		}
 	}
 	atomic_fetch_sub(&crew->dry, 1);
@@ -128,29 +125,19 @@ bool crew_pop(struct crew *crew, struct frontier *open, struct node *out)
 /* ---- results --------------------------------------------------------------------------------------------------------
  */
 
-static void note_limit(struct crew *crew)
-{
-	struct planner *planner = crew->planner;
-	struct solutions *full = &planner->solutions[planner->request->depth - 1];
-	double limit = full->count == full->limit ? solutions_at(full, full->count - 1)->cost : INFINITY;
-	atomic_store_explicit(&crew->limit, limit, memory_order_relaxed);
-}
-
 void crew_report(struct crew *crew, struct worker *worker)
 {
 	struct planner *planner = crew->planner;
 	for (int i = 0; i < worker->found_count; i++) {
 		const struct solution *solution = &worker->found[i];
-		struct solutions *list = &planner->solutions[worker->found_shots[i] - 1];
-		if (!solutions_add(list, solution) || list != best_solutions(planner) ||
-		    solutions_at(list, 0)->key != solution->key)
+		if (!results_add(planner->results, solution, worker->found_shots[i]))
 			continue;
 		crew->improved = true;
 		atomic_store_explicit(&crew->best, solution->cost, memory_order_relaxed);
 		atomic_store_explicit(&planner->shown.depth, worker->found_shots[i], memory_order_relaxed);
 	}
 	worker->found_count = 0;
-	note_limit(crew);
+	atomic_store_explicit(&crew->limit, results_limit(planner->results), memory_order_relaxed);
 	if (crew->improved)
 		pthread_cond_signal(&crew->news);
 }
@@ -171,7 +158,7 @@ static bool must_report(const struct crew *crew, const struct worker *worker)
 		return true;
 	double best = atomic_load_explicit(&crew->best, memory_order_relaxed);
 	for (int i = 0; i < worker->found_count; i++)
-		if (worker->found[i].cost <= best || worker->found_shots[i] == crew->planner->request->depth)
+		if (worker->found[i].cost <= best || worker->found_shots[i] == crew->planner->results->depth)
 			return true;
 	return false;
 }
@@ -191,33 +178,25 @@ static void open_state(struct crew *crew, struct worker *worker, const struct so
 		return;
 	}
 	struct node root[ROOTS_MAX];
-	state_set(&planner->state[index], planner, shot, outcome);
-	int count = state_roots(planner, index, root);
+	solution_open(shot, &planner->task, index, outcome);
+	int count = state_roots(&planner->task, index, root);
 	crew->share->give(crew, worker, root, count);
 }
 
 static void take_in(struct crew *crew, struct worker *worker, const struct slot *slot, const struct played *played)
 {
-	struct planner *planner = crew->planner;
-	struct state *from = &planner->state[slot->node.state];
-	atomic_fetch_or_explicit(&from->landed[played->record.target], (uint8_t)(1u << played->record.pocket),
-				 memory_order_relaxed);
-	int depth = planner->request->depth, shots = from->shots + 1;
-	bool last = shots == depth || outcome_is_cleared(&played->outcome, planner->ball_count);
-	struct solution solution = solution_make(planner, slot->node.state, &played->record);
-	worker->found_shots[worker->found_count] = (uint8_t)(last ? depth : shots);
-	worker->found[worker->found_count++] = solution;
-	if (!last && solution.cost <= atomic_load_explicit(&crew->limit, memory_order_relaxed))
-		open_state(crew, worker, &solution, &played->outcome);
+	struct finding finding = finding_make(&crew->planner->task, (int32_t)slot->node.state, played);
+	worker->found_shots[worker->found_count] = (uint8_t)finding.shots;
+	worker->found[worker->found_count++] = finding.solution;
+	if (finding.leads_on &&
+	    finding.solution.cost <= atomic_load_explicit(&crew->limit, memory_order_relaxed))
+		open_state(crew, worker, &finding.solution, &played->outcome);
 }
 
 static void take_in_all(struct crew *crew, struct worker *worker, struct slot *slot)
 {
-	count_up(&worker->count[COUNT_NODES], slot->expansions);
-	count_up(&worker->count[COUNT_SIMS], slot->sims);
-	count_up(&worker->count[COUNT_TRIED], slot->tried);
-	count_up(&worker->count[COUNT_LANDED], slot->landed);
-	count_up(&worker->count[COUNT_REFINED], slot->refined);
+	for (int i = 0; i < COUNT_KINDS; i++)
+		count_up(&worker->count[i], slot->count[i]);
 	if (slot->overflow)
 		atomic_store_explicit(&crew->overflow, true, memory_order_relaxed);
 	for (int i = 0; i < slot->played_count; i++)
@@ -242,9 +221,9 @@ static void work(void *context, int item, int thread)
 	struct slot *slot = &planner->slot[item];
 	struct workspace *workspace = &planner->work[item + 1]; /* the first is the manager's */
 	while (crew->share->take(crew, worker, &slot->node)) {
-		if (node_is_spare(planner, &slot->node))
+		if (state_is_spare(&planner->task, &slot->node))
 			continue;
-		slot_work(planner, slot, workspace);
+		slot_work(&planner->task, slot, workspace);
 		take_in_all(crew, worker, slot);
 	}
 	pthread_mutex_lock(&crew->lock);
@@ -261,20 +240,17 @@ static void work(void *context, int item, int thread)
 static void begin(struct crew *crew)
 {
 	struct planner *planner = crew->planner;
-	struct solutions *list = best_solutions(planner);
-	bool any = list && list != &planner->solutions[SAFETY_LIST];
-	atomic_store(&crew->best, any ? solutions_at(list, 0)->cost : INFINITY);
-	note_limit(crew);
-	memcpy(crew->slice,
-	       (uint64_t[]){planner->nodes, planner->sims, planner->tried, planner->landed, planner->refined},
-	       sizeof crew->slice);
+	bool any = results_have_pot(planner->results);
+	atomic_store(&crew->best, any ? solutions_at(results_best(planner->results), 0)->cost : INFINITY);
+	atomic_store(&crew->limit, results_limit(planner->results));
+	memcpy(crew->slice, planner->count, sizeof crew->slice);
 	atomic_store(&crew->state_count, planner->state_count);
 	atomic_store(&crew->dry, 0);
 	atomic_store(&crew->over, false);
 	atomic_store(&crew->overflow, false);
 	crew->improved = crew->serve_due = crew->cut = false;
 	crew->finished = 0;
-	crew->start = now(planner);
+	crew->start = budget_now(&planner->budget);
 	for (int i = 0; i < crew->worker_count; i++) {
 		struct worker *worker = &crew->worker[i];
 		frontier_clear(&worker->open);
@@ -301,11 +277,8 @@ static void sum_up(struct crew *crew)
 {
 	struct planner *planner = crew->planner;
 	planner->cut = crew->cut;
-	planner->nodes = crew->slice[COUNT_NODES] + sum(crew, COUNT_NODES);
-	planner->sims = crew->slice[COUNT_SIMS] + sum(crew, COUNT_SIMS);
-	planner->tried = crew->slice[COUNT_TRIED] + sum(crew, COUNT_TRIED);
-	planner->landed = crew->slice[COUNT_LANDED] + sum(crew, COUNT_LANDED);
-	planner->refined = crew->slice[COUNT_REFINED] + sum(crew, COUNT_REFINED);
+	for (int i = 0; i < COUNT_KINDS; i++)
+		planner->count[i] = crew->slice[i] + sum(crew, i);
 }
 
 void crew_run(struct crew *crew, plan_progress_fn *progress, void *context, struct plan_result *result)

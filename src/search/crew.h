@@ -11,8 +11,6 @@ enum {
 	INBOX_MAX = 512 /* nodes of one answer to a worker */
 };
 
-enum { COUNT_NODES, COUNT_SIMS, COUNT_TRIED, COUNT_LANDED, COUNT_REFINED, COUNT_KINDS };
-
 struct crew;
 
 /* One worker. Written by itself alone but for what stands under crew->lock. */

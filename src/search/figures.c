@@ -1,4 +1,5 @@
-/* What can be seen of a planner while it works. */
+#include "search/figures.h"
+
 #include "search/crew.h"
 
 void show_begin(struct planner *planner)
@@ -13,11 +14,11 @@ void show_begin(struct planner *planner)
 void show_step(struct planner *planner)
 {
 	struct shown *shown = &planner->shown;
-	int depth = planner->request->depth;
-	while (depth > 0 && planner->solutions[depth - 1].count == 0)
+	int depth = planner->results->depth;
+	while (depth > 0 && planner->results->list[depth - 1].count == 0)
 		depth--;
-	atomic_store_explicit(&shown->nodes, shown->nodes_before + planner->nodes, memory_order_relaxed);
-	atomic_store_explicit(&shown->sims, shown->sims_before + planner->sims, memory_order_relaxed);
+	atomic_store_explicit(&shown->nodes, shown->nodes_before + planner->count[COUNT_NODES], memory_order_relaxed);
+	atomic_store_explicit(&shown->sims, shown->sims_before + planner->count[COUNT_SIMS], memory_order_relaxed);
 	atomic_store_explicit(&shown->open, planner->frontier.count, memory_order_relaxed);
 	atomic_store_explicit(&shown->depth, depth, memory_order_relaxed);
 }

@@ -8,6 +8,12 @@
 #include <stdlib.h>
 
 #include "search/crew.h"
+#include "search/export.h"
+#include "search/figures.h"
+#include "search/rank.h"
+#include "search/safety.h"
+#include "search/start.h"
+#include "search/step.h"
 
 /* Of a live budget, for those who rank by success, and for those who only want to know the tolerance of a few plans. */
 static const double RANKING_SHARE = 0.2, TOLERANCE_SHARE = 0.05;
@@ -32,7 +38,7 @@ static size_t fixed_memory(void)
 {
 	return sizeof(struct planner) + (PLAN_WORKERS_MAX + 1) * sizeof(struct workspace) +
 	       BATCH * sizeof(struct slot) + STATES_MAX * sizeof(struct state) +
-	       (PLAN_SHOTS_MAX + 1) * sizeof(struct solutions) + PLAN_MAX * sizeof(struct plan);
+	       sizeof(struct results) + PLAN_MAX * sizeof(struct plan);
 }
 
 static int take_memory(struct planner *planner)
@@ -42,10 +48,10 @@ static int take_memory(struct planner *planner)
 	size_t bytes = planner->def.memory - fixed_memory();
 	planner->work = calloc((size_t)workers, sizeof *planner->work);
 	planner->slot = calloc(BATCH, sizeof *planner->slot);
-	planner->state = calloc(STATES_MAX, sizeof *planner->state);
-	planner->solutions = calloc(PLAN_SHOTS_MAX + 1, sizeof *planner->solutions);
+	planner->task.state = calloc(STATES_MAX, sizeof *planner->task.state);
+	planner->results = calloc(1, sizeof *planner->results);
 	planner->plan = calloc(PLAN_MAX, sizeof *planner->plan);
-	if (!planner->work || !planner->slot || !planner->state || !planner->solutions || !planner->plan)
+	if (!planner->work || !planner->slot || !planner->task.state || !planner->results || !planner->plan)
 		return -ENOMEM;
 	int rc = frontier_init(&planner->frontier, bytes);
 	if (rc == 0)
@@ -86,7 +92,10 @@ int planner_create(struct planner **out, const struct planner_def *def)
 	if (!planner)
 		return -ENOMEM;
 	planner->def = *def;
+	planner->budget = (struct budget){.now = def->now, .now_context = def->now_context};
 	mirrors_init(&planner->mirrors, def->table);
+	planner->task = (struct task){
+		.def = &planner->def, .mirrors = &planner->mirrors, .budget = &planner->budget};
 	int rc = take_memory(planner);
 	if (rc != 0) {
 		planner_destroy(planner);
@@ -105,53 +114,15 @@ void planner_destroy(struct planner *planner)
 	frontier_finish(&planner->frontier);
 	free(planner->work);
 	free(planner->slot);
-	free(planner->state);
-	free(planner->solutions);
+	free(planner->task.state);
+	free(planner->results);
 	free(planner->plan);
 	free(planner);
 }
 
 void planner_cancel(struct planner *planner, uint64_t run)
 {
-	uint64_t before = atomic_load_explicit(&planner->cancelled, memory_order_relaxed);
-	while (before < run && !atomic_compare_exchange_weak_explicit(&planner->cancelled, &before, run,
-								      memory_order_relaxed, memory_order_relaxed))
-		continue;
-}
-
-static void export_plan(const struct planner *planner, const struct solution *solution, struct plan *plan)
-{
-	const struct state *from = &planner->state[solution->state];
-	int shots = from->shots + 1;
-	plan->shot_count = shots;
-	plan->cost = solution->cost;
-	shot_export(&solution->last, from->ball, planner->ball_count, &plan->shot[shots - 1]);
-	for (int i = shots - 2; i >= 0; i--) {
-		const struct state *before = &planner->state[from->parent];
-		shot_export(&from->record, before->ball, planner->ball_count, &plan->shot[i]);
-		from = before;
-	}
-}
-
-void planner_export(struct planner *planner, int limit, struct plan_result *result)
-{
-	struct solutions *list = best_solutions(planner);
-	*result = (struct plan_result){
-		.plan = planner->plan,
-		.found = list ? list->count : 0,
-		.nodes = planner->nodes,
-		.sims = planner->sims,
-		.tried = planner->tried,
-		.landed = planner->landed,
-		.refined = planner->refined,
-		.exhausted = !planner->cut && !planner->overflow,
-	};
-	if (result->found > planner->request->plans)
-		result->found = planner->request->plans;
-	result->plan_count = limit > 0 && limit < result->found ? limit : result->found;
-	for (int i = 0; i < result->plan_count; i++)
-		export_plan(planner, solutions_at(list, i), &planner->plan[i]);
-	result->status = result->plan_count > 0 ? PLAN_OK : PLAN_NONE;
+	budget_cancel(&planner->budget, run);
 }
 
 /* At most limit of them. True when more are to be worked on. */
@@ -174,23 +145,22 @@ static bool run_batches(struct planner *planner, int limit, plan_progress_fn *pr
 
 static void search(struct planner *planner, plan_progress_fn *progress, void *context, struct plan_result *result)
 {
-	double budget = planner->request->budget.seconds,
-	       begin = budget > 0 ? planner->def.now(planner->def.now_context) : 0;
+	double budget = planner->task.request->budget.seconds,
+	       begin = budget > 0 ? budget_now(&planner->budget) : 0;
 	double share = 1;
 	if (planner->def.profile.rank_by_success)
 		share -= RANKING_SHARE;
-	else if (planner->request->tolerances > 0)
+	else if (planner->task.request->tolerances > 0)
 		share -= TOLERANCE_SHARE;
-	planner->deadline = budget > 0 ? begin + share * budget : INFINITY;
+	planner->budget.deadline = budget > 0 ? begin + share * budget : INFINITY;
 	search_begin(planner);
 	/* An easy question is answered before any worker is woken. */
-	bool crewed = planner->crew && planner->request->budget.nodes == 0;
+	bool crewed = planner->crew && planner->task.request->budget.nodes == 0;
 	if (run_batches(planner, crewed ? FIRST_SLICE : INT_MAX, progress, context, result) && crewed)
 		crew_run(planner->crew, progress, context, result);
-	struct solutions *list = best_solutions(planner);
-	if (!list || list == &planner->solutions[SAFETY_LIST])
+	if (!results_have_pot(planner->results))
 		safety_find(planner, true);
-	planner->deadline = budget > 0 ? begin + budget : INFINITY;
+	planner->budget.deadline = budget > 0 ? begin + budget : INFINITY;
 	rank_solutions(planner);
 }
 
@@ -204,11 +174,12 @@ int planner_run(struct planner *planner, const struct plan_request *request, pla
 	}
 	if (rc != 0)
 		return rc;
-	planner->request = request;
+	planner->task.request = request;
+	planner->budget.run = request->run;
 	search(planner, progress, context, result);
-	bool cancelled = search_is_cancelled(planner);
+	bool cancelled = budget_is_cancelled(&planner->budget);
 	planner_export(planner, cancelled ? planner->def.progress_plans : planner->def.result_plans, result);
-	planner->request = NULL;
+	planner->task.request = NULL;
 	if (!cancelled)
 		return 0;
 	result->status = PLAN_CANCELLED;

@@ -1,7 +1,8 @@
-/* Tolerance and success of the best plans, and the order by success. */
+#include "search/rank.h"
+
 #include <math.h>
 
-#include "search/planner.h"
+#include "search/tolerance.h"
 
 enum { JOB_MAX = PLAN_MAX * PLAN_SHOTS_MAX };
 
@@ -23,7 +24,7 @@ static void add_job(struct ranking *ranking, struct record *record, int32_t from
 		if (ranking->job[i].record == record)
 			return;
 	ranking->job[ranking->count].record = record;
-	ranking->job[ranking->count].from = &ranking->planner->state[from];
+	ranking->job[ranking->count].from = &ranking->planner->task.state[from];
 	ranking->count++;
 }
 
@@ -31,17 +32,17 @@ static void do_job(void *context, int item, int worker)
 {
 	struct ranking *ranking = context;
 	const struct planner *planner = ranking->planner;
-	if (search_is_over(planner))
+	if (budget_is_over(&planner->budget))
 		return;
-	tolerance_find(planner, ranking->job[item].from, ranking->job[item].record, &planner->work[worker]);
+	tolerance_find(&planner->task, ranking->job[item].from, ranking->job[item].record, &planner->work[worker]);
 }
 
 /* Chance that all shots of a plan succeed; what is not known counts for nothing. */
 static double chance(const struct planner *planner, const struct solution *solution)
 {
 	double product = isnan(solution->last.success) ? 0 : solution->last.success;
-	for (int32_t at = solution->state; planner->state[at].parent != NO_STATE; at = planner->state[at].parent)
-		product *= isnan(planner->state[at].record.success) ? 0 : planner->state[at].record.success;
+	for (int32_t at = solution->state; planner->task.state[at].parent != NO_STATE; at = planner->task.state[at].parent)
+		product *= isnan(planner->task.state[at].record.success) ? 0 : planner->task.state[at].record.success;
 	return product;
 }
 
@@ -60,10 +61,10 @@ static void sort_by_chance(const struct planner *planner, struct solutions *list
 
 void rank_solutions(struct planner *planner)
 {
-	struct solutions *list = best_solutions(planner);
+	struct solutions *list = results_best(planner->results);
 	bool by_success = planner->def.profile.rank_by_success;
 	int wanted =
-		by_success && planner->request->tolerances < RANKED_MAX ? RANKED_MAX : planner->request->tolerances;
+		by_success && planner->task.request->tolerances < RANKED_MAX ? RANKED_MAX : planner->task.request->tolerances;
 	struct ranking ranking = {.planner = planner, .count = 0};
 	if (!list)
 		return;
@@ -71,8 +72,8 @@ void rank_solutions(struct planner *planner)
 	for (int i = 0; i < count; i++) {
 		struct solution *s = solutions_at(list, i);
 		add_job(&ranking, &s->last, s->state);
-		for (int32_t at = s->state; planner->state[at].parent != NO_STATE; at = planner->state[at].parent)
-			add_job(&ranking, &planner->state[at].record, planner->state[at].parent);
+		for (int32_t at = s->state; planner->task.state[at].parent != NO_STATE; at = planner->task.state[at].parent)
+			add_job(&ranking, &planner->task.state[at].record, planner->task.state[at].parent);
 	}
 	pool_for(planner->pool, ranking.count, do_job, &ranking);
 	if (by_success)

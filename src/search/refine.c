@@ -1,8 +1,7 @@
-/* The aim of a shot, refined against the simulation: mirrors and centre-to-centre contacts are where it starts from,
- * not where it ends. */
-#include <math.h>
+/* Mirrors and centre-to-centre contacts are where the aim starts from, not where it ends. */
+#include "search/refine.h"
 
-#include "search/planner.h"
+#include <math.h>
 
 enum { STEPS_MAX = 8, HALVINGS_MAX = 3, FASTER_MAX = 4 };
 static const double PROBE = 2e-4;    /* rad, first step of the secant */
@@ -19,7 +18,7 @@ struct miss {
 };
 
 struct aiming {
-	const struct planner *planner;
+	const struct task *task;
 	struct slot *slot;
 	struct workspace *work;
 	struct record *record;
@@ -58,7 +57,7 @@ static bool follow(struct leg *leg, const struct aiming *aiming, const struct tr
 		return true;
 	}
 	case EVENT_CUSHION:
-		if (!aiming->planner->def.table->cushion[event->other].main_rail ||
+		if (!aiming->task->def->table->cushion[event->other].main_rail ||
 		    leg->cushions == goal_of(aiming, leg)->rails)
 			return false;
 		leg->cushions++;
@@ -98,14 +97,13 @@ static struct miss look(const struct aiming *aiming)
 
 static struct miss aim_and_look(struct aiming *aiming, double angle)
 {
-	const struct planner *planner = aiming->planner;
-	const struct state *state = &planner->state[aiming->slot->node.state];
-	if (search_is_over(planner))
+	const struct task *task = aiming->task;
+	const struct state *state = &task->state[aiming->slot->node.state];
+	if (budget_is_over(task->budget))
 		return (struct miss){.stage = -1};
 	aiming->record->shot.angle = angle;
-	aiming->slot->sims++;
-	if (!shot_play(aiming->work, planner->def.table, &planner->def.model, state->ball, planner->ball_count,
-		       &state->rules, aiming->record, aiming->outcome))
+	aiming->slot->count[COUNT_SIMS]++;
+	if (!state_play(task, state, aiming->work, aiming->record, aiming->outcome))
 		return (struct miss){.stage = -1};
 	return look(aiming);
 }
@@ -143,14 +141,14 @@ static double approach(struct aiming *aiming, double angle, struct miss *miss)
 	return angle;
 }
 
-bool shot_refine(const struct planner *planner, struct slot *slot, struct workspace *work, struct record *record,
+bool shot_refine(const struct task *task, struct slot *slot, struct workspace *work, struct record *record,
 		 struct rules_outcome *outcome)
 {
-	struct aiming aiming = {.planner = planner, .slot = slot, .work = work, .record = record, .outcome = outcome};
-	if (!candidate_goals(&planner->state[slot->node.state].scene, &slot->node, aiming.goal))
+	struct aiming aiming = {.task = task, .slot = slot, .work = work, .record = record, .outcome = outcome};
+	if (!candidate_goals(&task->state[slot->node.state].scene, &slot->node, aiming.goal))
 		return false;
 	double angle = record->shot.angle;
-	for (int i = 0; i < FASTER_MAX && record->shot.speed <= fmin(planner->def.profile.max_speed, SHOT_SPEED_MAX);
+	for (int i = 0; i < FASTER_MAX && record->shot.speed <= fmin(task->def->profile.max_speed, SHOT_SPEED_MAX);
 	     i++) {
 		struct miss miss = aim_and_look(&aiming, angle);
 		if (miss.stage < 0)

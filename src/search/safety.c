@@ -1,9 +1,8 @@
-/* There is always an answer: the simplest legal contact with a ball on. */
+#include "search/safety.h"
+
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
-
-#include "search/planner.h"
 
 enum { AIMS = 5, AIM_MAX = 128, SAFETY_RAILS = 2, FAN_ANGLES = 360, FAN_SPEEDS = 2 };
 
@@ -86,19 +85,18 @@ static void aim_at(const struct scene *scene, int state, int ball, double off, i
 
 static bool play(struct planner *planner, const struct aim *aim, struct record *record)
 {
-	const struct state *state = &planner->state[aim->state];
+	const struct state *state = &planner->task.state[aim->state];
 	struct rules_outcome outcome;
 	memset(record, 0, sizeof *record);
 	record->shot = aim->shot;
 	record->target = aim->ball; /* the ball named, for the judge */
-	record->chain[0] = (int16_t)planner->cue;
+	record->chain[0] = (int16_t)planner->task.cue;
 	record->rails = aim->rails;
 	record->search_cost = aim->cost;
-	planner->sims++;
-	bool done = shot_play(planner->work, planner->def.table, &planner->def.model, state->ball, planner->ball_count,
-			      &state->rules, record, &outcome);
+	planner->count[COUNT_SIMS]++;
+	bool done = state_play(&planner->task, state, planner->work, record, &outcome);
 	record->target = record->pocket = -1;
-	record->chain[1] = done ? (int16_t)rules_first_contact(&planner->work->trace, planner->cue) : -1;
+	record->chain[1] = done ? (int16_t)rules_first_contact(&planner->work->trace, planner->task.cue) : -1;
 	record->chain[2] = record->chain[3] = -1;
 	record->chain_count = record->chain[1] >= 0 ? 2 : 1;
 	record->cost = record->search_cost +
@@ -109,8 +107,8 @@ static bool play(struct planner *planner, const struct aim *aim, struct record *
 
 static void keep(struct planner *planner, const struct aim *aim, const struct record *record)
 {
-	struct solution solution = solution_make(planner, aim->state, record);
-	solutions_add(&planner->solutions[SAFETY_LIST], &solution);
+	struct solution solution = solution_make(&planner->task, aim->state, record);
+	solutions_add(&planner->results->list[SAFETY_LIST], &solution);
 }
 
 /* No aim works: a fan of directions, the first legal shot or else the cheapest foul. */
@@ -119,8 +117,8 @@ static bool fan_find(struct planner *planner)
 	struct record best, record;
 	struct aim aim = {.cost = 10, .ball = -1}, best_aim = aim;
 	int best_foul = 1000;
-	for (int i = 0; i < FAN_SPEEDS * FAN_ANGLES && best_foul > 0 && !search_is_cancelled(planner) &&
-			(best_foul == 1000 || !search_is_over(planner));
+	for (int i = 0; i < FAN_SPEEDS * FAN_ANGLES && best_foul > 0 && !budget_is_cancelled(&planner->budget) &&
+			(best_foul == 1000 || !budget_is_over(&planner->budget));
 	     i++) {
 		aim.shot.angle = 2 * M_PI * (i % FAN_ANGLES) / FAN_ANGLES;
 		aim.shot.speed = planner->def.profile.max_speed / (i < FAN_ANGLES ? 2 : 1);
@@ -139,19 +137,19 @@ bool safety_find(struct planner *planner, bool thorough)
 {
 	static const double off[AIMS] = {0, 0.7, -0.7, 1.6, -1.6};
 	struct aims aims = {.count = 0};
-	int rails = planner->request->rails > SAFETY_RAILS ? planner->request->rails : SAFETY_RAILS;
-	for (int i = 0; i < planner->state_count && planner->state[i].parent == NO_STATE; i++) {
-		const struct scene *scene = &planner->state[i].scene;
+	int rails = planner->task.request->rails > SAFETY_RAILS ? planner->task.request->rails : SAFETY_RAILS;
+	for (int i = 0; i < planner->state_count && planner->task.state[i].parent == NO_STATE; i++) {
+		const struct scene *scene = &planner->task.state[i].scene;
 		for (int b = 0; b < scene->count; b++)
 			for (int a = 0; a < (thorough ? AIMS : 1) && (scene->on >> b & 1); a++)
 				aim_at(scene, i, b, off[a], thorough ? rails : 0, &aims);
 	}
-	for (int i = 0; i < aims.count && (i == 0 || !search_is_over(planner)); i++) {
+	for (int i = 0; i < aims.count && (i == 0 || !budget_is_over(&planner->budget)); i++) {
 		struct record record;
 		if (!play(planner, &aims.aim[i], &record) || record.foul != 0)
 			continue;
 		keep(planner, &aims.aim[i], &record);
 		return true;
 	}
-	return thorough && planner->state[0].scene.on != 0 && fan_find(planner);
+	return thorough && planner->task.state[0].scene.on != 0 && fan_find(planner);
 }

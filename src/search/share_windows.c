@@ -12,12 +12,6 @@
 enum { HAND_OVER_MAX = 128 };
 static const double HAND_OVER_SHARE = 0.6; /* of the open nodes, as the thesis' program */
 
-static double now(const struct crew *crew)
-{
-	const struct planner_def *def = &crew->planner->def;
-	return def->now ? def->now(def->now_context) : 0;
-}
-
 static void begin(struct crew *crew)
 {
 	const struct planner_def *def = &crew->planner->def;
@@ -80,14 +74,14 @@ static void hold_window(struct crew *crew, struct worker *worker)
 static void look_at_clock(struct crew *crew, struct worker *worker)
 {
 	const struct planner_def *def = &crew->planner->def;
-	double k = def->sync_period, n = def->sync_window, t = now(crew);
+	double k = def->sync_period, n = def->sync_window, t = budget_now(&crew->planner->budget);
 	if (t >= worker->window) {
 		double periods = floor((t - worker->window) / k);
 		count_up(&worker->missed, (uint64_t)periods);
 		worker->window += periods * k;
 		if (t < worker->window + n) {
 			hold_window(crew, worker);
-			if (now(crew) > worker->window + n)
+			if (budget_now(&crew->planner->budget) > worker->window + n)
 				count_up(&worker->late, 1);
 		} else {
 			count_up(&worker->missed, 1);
@@ -136,7 +130,7 @@ static bool nobody_has_any(const struct crew *crew)
 /* Asks the manager for nodes and waits for them. False: the search is over. */
 static bool ask(struct crew *crew, struct worker *worker)
 {
-	double since = now(crew);
+	double since = budget_now(&crew->planner->budget);
 	pthread_mutex_lock(&crew->lock);
 	crew_report(crew, worker);
 	worker->asks = true;
@@ -156,7 +150,7 @@ static bool ask(struct crew *crew, struct worker *worker)
 	worker->asks = false;
 	empty_inbox(worker);
 	pthread_mutex_unlock(&crew->lock);
-	atomic_store(&worker->waited, atomic_load(&worker->waited) + now(crew) - since);
+	atomic_store(&worker->waited, atomic_load(&worker->waited) + budget_now(&crew->planner->budget) - since);
 	return !atomic_load(&crew->over);
 }
 

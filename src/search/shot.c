@@ -23,19 +23,18 @@ static void note_potted(const struct trace *trace, struct record *record)
 	}
 }
 
-bool shot_play(struct workspace *work, const struct table *table, const struct model *model, const struct ball *ball,
-	       int count, const struct rules_state *state, struct record *record, struct rules_outcome *outcome)
+bool shot_play(struct workspace *work, const struct setting *from, struct record *record, struct rules_outcome *outcome)
 {
 	const struct sim_limits limits = {.max_time = INFINITY, .max_events = SHOT_EVENTS_MAX};
-	int cue = cue_ball(ball, count);
+	int cue = cue_ball(from->ball, from->count);
 	assert(cue >= 0);
-	sim_init(&work->sim, table, model, ball, count);
+	sim_init(&work->sim, from->table, from->model, from->ball, from->count);
 	trace_init(&work->trace, work->entry, SHOT_TRACE_MAX);
 	sim_strike(&work->sim, cue, &record->shot);
 	if (sim_run(&work->sim, &limits, &work->trace) != SIM_AT_REST || work->trace.overflow)
 		return false;
 	note_potted(&work->trace, record);
-	rules_judge(table, state, &work->trace, record->target, outcome);
+	rules_judge(from->table, from->rules, &work->trace, record->target, outcome);
 	record->points = outcome->points;
 	record->foul = outcome->foul;
 	record->hash = sim_hash(&work->sim, 0);
@@ -48,34 +47,6 @@ bool shot_is_as_meant(const struct record *record)
 		if (record->potted[i].ball == record->target)
 			return record->potted[i].pocket == record->pocket;
 	return false;
-}
-
-void shot_export(const struct record *record, const struct ball *ball, int count, struct plan_shot *out)
-{
-	*out = (struct plan_shot){
-		.shot = record->shot,
-		.target = record->target,
-		.pocket = record->pocket,
-		.chain_count = record->chain_count,
-		.rails = record->rails,
-		.potted_count = record->potted_count,
-		.points = record->points,
-		.foul = record->foul,
-		.search_cost = record->search_cost,
-		.cost = record->cost,
-		.tolerance_angle = record->tolerance_angle,
-		.tolerance_speed = record->tolerance_speed,
-		.success = record->success,
-		.hash = record->hash,
-	};
-	for (int i = 0; i < count; i++)
-		out->start[i] = ball[i];
-	for (int i = 0; i < PLAN_CHAIN_MAX; i++)
-		out->chain[i] = record->chain[i];
-	for (int i = 0; i < record->potted_count; i++) {
-		out->potted[i].ball = record->potted[i].ball;
-		out->potted[i].pocket = record->potted[i].pocket;
-	}
 }
 
 bool plan_shot_replay(const struct table *table, const struct model *model, const struct plan_shot *shot,

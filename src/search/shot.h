@@ -26,15 +26,21 @@ struct record {
 	} potted[PLAN_POTTED_MAX];
 };
 
-/* Simulates record->shot from ball and judges it by state, record->target being the named ball: fills potted, points,
- * foul, hash. False when the simulation does not end within its events; outcome is unchanged then. */
-bool shot_play(struct workspace *work, const struct table *table, const struct model *model, const struct ball *ball,
-	       int count, const struct rules_state *state, struct record *record, struct rules_outcome *outcome);
+/* What a shot is played from. All borrowed; one white ball is on the table. */
+struct setting {
+	const struct table *table;
+	const struct model *model;
+	const struct ball *ball;
+	int count;
+	const struct rules_state *rules;
+};
+
+/* Simulates and judges record->shot, record->target being the named ball: fills potted, points, foul, hash. False when
+ * the simulation does not end within its events; outcome is unchanged then. */
+bool shot_play(struct workspace *work, const struct setting *from, struct record *record,
+	       struct rules_outcome *outcome);
 
 /* The meant ball falls into the meant pocket. */
 bool shot_is_as_meant(const struct record *record);
-
-/* The plan_shot of a record played from ball. */
-void shot_export(const struct record *record, const struct ball *ball, int count, struct plan_shot *out);
 
 #endif

@@ -1,13 +1,13 @@
 /* How far a shot may be off before the pot fails, found by simulation, and what that makes of a player's spread. */
-#include <math.h>
+#include "search/tolerance.h"
 
-#include "search/planner.h"
+#include <math.h>
 
 enum { HALVINGS = 6 };
 
 /* A shot with one quantity off by some amount. */
 struct trial {
-	const struct planner *planner;
+	const struct task *task;
 	const struct state *state;
 	struct workspace *work;
 	struct record record;
@@ -18,8 +18,7 @@ struct trial {
 static bool still_falls(struct trial *trial, double off)
 {
 	struct rules_outcome outcome;
-	const struct planner *planner = trial->planner;
-	if (search_is_over(planner))
+	if (budget_is_over(trial->task->budget))
 		return false;
 	trial->record.shot = trial->exact;
 	if (trial->speed)
@@ -28,8 +27,7 @@ static bool still_falls(struct trial *trial, double off)
 		trial->record.shot.angle += off;
 	if (!(trial->record.shot.speed > 0 && trial->record.shot.speed <= SHOT_SPEED_MAX))
 		return false;
-	return shot_play(trial->work, planner->def.table, &planner->def.model, trial->state->ball, planner->ball_count,
-			 &trial->state->rules, &trial->record, &outcome) &&
+	return state_play(trial->task, trial->state, trial->work, &trial->record, &outcome) &&
 	       trial->record.foul == 0 && shot_is_as_meant(&trial->record);
 }
 
@@ -64,18 +62,17 @@ static double within(double below, double above, double sigma)
 	return (erf(above / (sigma * M_SQRT2)) + erf(below / (sigma * M_SQRT2))) / 2;
 }
 
-void tolerance_find(const struct planner *planner, const struct state *state, struct record *record,
-		    struct workspace *work)
+void tolerance_find(const struct task *task, const struct state *state, struct record *record, struct workspace *work)
 {
-	const struct cost_profile *profile = &planner->def.profile;
+	const struct cost_profile *profile = &task->def->profile;
 	struct trial trial = {
-		.planner = planner, .state = state, .work = work, .record = *record, .exact = record->shot};
+		.task = task, .state = state, .work = work, .record = *record, .exact = record->shot};
 	if (record->target < 0)
 		return;
 	double left = reach(&trial, 1, 0.0005, 0.1), right = reach(&trial, -1, 0.0005, 0.1);
 	trial.speed = true;
 	double faster = reach(&trial, 1, 0.01, 0.5), slower = reach(&trial, -1, 0.01, 0.5);
-	if (search_is_over(planner))
+	if (budget_is_over(task->budget))
 		return; /* what was found is cut short: it stays unknown */
 	record->tolerance_angle = fmin(left, right);
 	record->tolerance_speed = fmin(faster, slower);

@@ -1,7 +1,8 @@
-/* A complete chain, played at its start speeds. */
+#include "search/slot.h"
+
 #include <string.h>
 
-#include "search/planner.h"
+#include "search/refine.h"
 
 static void begin_record(const struct node *node, struct record *record)
 {
@@ -33,39 +34,54 @@ static bool rename_fluke(const struct cost_profile *profile, const struct scene 
 
 /* Plays record->shot; where mirroring is not how balls come off cushions and throw is felt, the aim is refined. True
  * for a proposal. */
-static bool try_shot(const struct planner *planner, struct slot *slot, struct workspace *work, struct record *record,
+static bool try_shot(const struct task *task, struct slot *slot, struct workspace *work, struct record *record,
 		     struct rules_outcome *outcome)
 {
-	const struct state *state = &planner->state[slot->node.state];
-	slot->sims++;
-	slot->tried++;
-	bool played = shot_play(work, planner->def.table, &planner->def.model, state->ball, planner->ball_count,
-				&state->rules, record, outcome);
+	const struct state *state = &task->state[slot->node.state];
+	slot->count[COUNT_SIMS]++;
+	slot->count[COUNT_TRIED]++;
+	bool played = state_play(task, state, work, record, outcome);
 	bool landed = played && record->foul == 0 && shot_is_as_meant(record);
-	slot->landed += landed;
-	if (!planner->def.model.thesis_motion && played) {
-		bool refined = shot_refine(planner, slot, work, record, outcome);
-		slot->refined += refined;
+	slot->count[COUNT_LANDED] += landed;
+	if (!task->def->model.thesis_motion && played) {
+		bool refined = shot_refine(task, slot, work, record, outcome);
+		slot->count[COUNT_REFINED] += refined;
 		return refined;
 	}
-	return landed || (played && record->foul == 0 && rename_fluke(&planner->def.profile, &state->scene, record));
+	return landed || (played && record->foul == 0 && rename_fluke(&task->def->profile, &state->scene, record));
 }
 
-void slot_play(const struct planner *planner, struct slot *slot, struct workspace *work)
+static void play(const struct task *task, struct slot *slot, struct workspace *work)
 {
-	const struct cost_profile *profile = &planner->def.profile;
-	int speeds = planner->request->speeds < SPEEDS_MAX ? planner->request->speeds : SPEEDS_MAX;
-	for (int i = 0; i < speeds && !search_is_over(planner); i++) {
+	const struct cost_profile *profile = &task->def->profile;
+	int speeds = task->request->speeds < SPEEDS_MAX ? task->request->speeds : SPEEDS_MAX;
+	for (int i = 0; i < speeds && !budget_is_over(task->budget); i++) {
 		struct played *played = &slot->played[slot->played_count];
 		struct record *record = &played->record;
 		begin_record(&slot->node, record);
 		record->shot.speed = slot->node.speed + i * profile->speed_step;
 		if (record->shot.speed > profile->max_speed)
 			break;
-		if (!try_shot(planner, slot, work, record, &played->outcome))
+		if (!try_shot(task, slot, work, record, &played->outcome))
 			continue;
 		record->cost = record->search_cost +
 			       cost_result(profile, record->points, record->shot.speed, record->search_cost);
 		slot->played_count++;
 	}
+}
+
+void slot_work(const struct task *task, struct slot *slot, struct workspace *work)
+{
+	slot->child_count = slot->played_count = 0;
+	memset(slot->count, 0, sizeof slot->count);
+	slot->overflow = false;
+	if (budget_is_over(task->budget))
+		return;
+	if (slot->node.complete) {
+		play(task, slot, work);
+		return;
+	}
+	const struct state *state = &task->state[slot->node.state];
+	slot->child_count = candidate_expand(&state->scene, &slot->node, slot->child, CHILDREN_MAX, &slot->overflow);
+	slot->count[COUNT_NODES] = 1;
 }
