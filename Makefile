@@ -201,12 +201,11 @@ fuzz:
 	@scripts/run-fuzz $(BUILD)/fuzz $(FUZZ_SECONDS) $(FUZZERS)
 fuzzers: $(FUZZ_BINS)
 
-# Static checks (package cppcheck; shellcheck where it is installed).
-lint:
-	cppcheck --quiet --error-exitcode=1 --std=c17 --enable=warning,performance,portability --inline-suppr -j$(JOBS) \
-		--library=scripts/cppcheck.cfg --suppressions-list=scripts/cppcheck-suppressions -D_GNU_SOURCE -DBILLIARD_CONFIG_DIR='""' -Isrc src tests bench fuzz
-	@if command -v shellcheck >/dev/null; then shellcheck $$(grep -lE '^#!/bin/(ba)?sh' scripts/* .ci/*) tests/*.sh; \
-		else echo "lint: shellcheck is not installed, scripts are not checked"; fi
+# Layout, faults, scripts: scripts/lint. Installs its own tools (scripts/packages-lint).
+lint: setup
+	@scripts/setup lint
+	+@$(MAKE) --no-print-directory $(BUILD)/lcmtypes/.stamp
+	@scripts/lint $(BUILD)
 
 # DESTDIR stages, PREFIX and SYSCONFDIR decide; installed files name the final places. Existing configurations are kept as FILE.new beside them.
 install: programs

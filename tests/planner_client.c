@@ -58,8 +58,8 @@ static void write_conf(const struct planner_setup *setup)
 		n += snprintf(edits + n, sizeof edits - (size_t)n, " -e 's/workers = [0-9]*/workers = %d/'",
 			      setup->workers);
 	if (setup->model)
-		n += snprintf(edits + n, sizeof edits - (size_t)n, " -e 's/^model = \"[a-z-]*\"/model = \"%s\"/'",
-			      setup->model);
+		snprintf(edits + n, sizeof edits - (size_t)n, " -e 's/^model = \"[a-z-]*\"/model = \"%s\"/'",
+			 setup->model);
 	snprintf(command, sizeof command, "sed %s config/thesis-table.conf >%s", edits, conf);
 	ck_assert_int_eq(system(command), 0);
 }

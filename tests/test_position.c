@@ -91,9 +91,10 @@ END_TEST
 /* What `billiard detect --json` prints. */
 START_TEST(seen_balls)
 {
-	ck_assert_msg(parse("{\"image\":\"a.png\",\"calibrated\":true,\"balls\":[{\"type\":\"RED\",\"x\":-565.8,\"y\":1,"
-			    "\"px\":3},{\"type\":\"WHITE\",\"x\":0,\"y\":0},{\"type\":\"RED\",\"x\":100,\"y\":100}]}\n") == 0,
-		      "%s", err);
+	ck_assert_msg(
+		parse("{\"image\":\"a.png\",\"calibrated\":true,\"balls\":[{\"type\":\"RED\",\"x\":-565.8,\"y\":1,"
+		      "\"px\":3},{\"type\":\"WHITE\",\"x\":0,\"y\":0},{\"type\":\"RED\",\"x\":100,\"y\":100}]}\n") == 0,
+		"%s", err);
 	ck_assert_int_eq(position.count, 3);
 	ck_assert_str_eq(position.name[0], "RED1");
 	ck_assert_str_eq(position.name[1], "WHITE1");

@@ -2,6 +2,7 @@
 #include "vision/stages.h"
 
 #include <getopt.h>
+#include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
@@ -30,8 +31,7 @@ static void keep(void *user, const char *name, const struct image *image)
 	ck_assert_int_eq(image->height, rig->image.image.height);
 	if (rig->count > 0 && rig->result.calibration != CALIBRATION_NONE) {
 		ck_assert(camera_project(&rig->result.camera, rig->ball[0].pos, rig->config.table.ball_radius, &px));
-		memcpy(album->centre[album->count],
-		       image->data + (int)(px.y + 0.5) * image->stride + 3 * (int)(px.x + 0.5), 3);
+		memcpy(album->centre[album->count], image->data + lround(px.y) * image->stride + 3 * lround(px.x), 3);
 	}
 	album->name[album->count++] = name;
 }

@@ -64,9 +64,9 @@ static int take_memory(struct planner *planner)
 /* What the search takes for granted of a profile; false for NaN, too. */
 static bool profile_is_valid(const struct cost_profile *p)
 {
-	const double not_negative[] = {p->w_distance,	p->w_angle,	  p->w_balls,	    p->w_rails,	    p->ball_cost,
-				       p->rail_cost,	p->w_points,	  p->w_speed,	    p->w_simulation, p->clearance,
-				       p->cue_clearance, p->cue_room,	  p->sigma_angle,   p->sigma_speed};
+	const double not_negative[] = {p->w_distance,	 p->w_angle,  p->w_balls,     p->w_rails,      p->ball_cost,
+				       p->rail_cost,	 p->w_points, p->w_speed,     p->w_simulation, p->clearance,
+				       p->cue_clearance, p->cue_room, p->sigma_angle, p->sigma_speed};
 	bool valid = p->max_cut > 0 && p->max_cut <= M_PI / 2 && p->max_speed > 0 && p->max_speed <= SHOT_SPEED_MAX &&
 		     p->pocket_speed > 0 && isfinite(p->pocket_speed) && p->speed_step > 0 && p->aims >= 1 &&
 		     p->aims <= AIMS_MAX - 1;
@@ -78,8 +78,8 @@ static bool profile_is_valid(const struct cost_profile *p)
 static bool def_is_valid(const struct planner_def *def)
 {
 	bool windows = def->sync_window > 0 && (def->workers + 1) * def->sync_window <= def->sync_period;
-	return def->table && profile_is_valid(&def->profile) && def->workers >= 1 && def->workers <= PLAN_WORKERS_MAX && def->memory > fixed_memory() &&
-	       def->scheme >= SCHEME_BATCH && def->scheme < SCHEME_COUNT &&
+	return def->table && profile_is_valid(&def->profile) && def->workers >= 1 && def->workers <= PLAN_WORKERS_MAX &&
+	       def->memory > fixed_memory() && def->scheme >= SCHEME_BATCH && def->scheme < SCHEME_COUNT &&
 	       (def->scheme != SCHEME_WINDOWS || (windows && def->now));
 }
 

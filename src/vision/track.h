@@ -8,11 +8,11 @@
 enum { TRACK_MAX = 40 };
 
 struct track {
-	int id;		       /* >= 1; 0: unused */
-	int age;	       /* frames since it was first seen */
-	int misses;	       /* frames in a row without it */
-	double seen_time;      /* s */
-	bool confirmed;	       /* seen often enough to be reported */
+	int id;		      /* >= 1; 0: unused */
+	int age;	      /* frames since it was first seen */
+	int misses;	      /* frames in a row without it */
+	double seen_time;     /* s */
+	bool confirmed;	      /* seen often enough to be reported */
 	struct sighting seen; /* its last fit */
 	struct stabiliser steady;
 	struct colour_feature look; /* averaged */

@@ -112,7 +112,8 @@ static bool is_cut(const struct trace *trace)
 static void draw_cut_note(cairo_t *cr, const struct table *table, const struct trace *trace)
 {
 	char text[80];
-	snprintf(text, sizeof text, "cut after %d events, %.1f s: the balls still move", trace->count, trace_end(trace));
+	snprintf(text, sizeof text, "cut after %d events, %.1f s: the balls still move", trace->count,
+		 trace_end(trace));
 	cairo_save(cr);
 	cairo_translate(cr, -table->length / 2, -table->width / 2 - margin / 3);
 	cairo_scale(cr, 1, -1); /* the table's y goes up, that of letters down */
@@ -160,8 +161,7 @@ static void draw(cairo_t *cr, const void *context)
 
 static int save_png(const struct plot *plot, const char *path, char *err, size_t err_size)
 {
-	cairo_surface_t *surface =
-		cairo_image_surface_create(CAIRO_FORMAT_RGB24, (int)plot->width, (int)plot->height);
+	cairo_surface_t *surface = cairo_image_surface_create(CAIRO_FORMAT_RGB24, (int)plot->width, (int)plot->height);
 	cairo_t *cr = cairo_create(surface);
 	draw(cr, plot);
 	int code = picture_save_png(cr, path, err, err_size);

@@ -292,8 +292,8 @@ int position_parse(struct position *out, const struct table *table, const char *
 		   char *err, size_t err_size)
 {
 	struct reader reader = {.table = table, .name = name, .err = err, .err_size = err_size};
-	int code = is_json(text, text + size) ? parse_json(&reader, text, size)
-					      : parse_lines(&reader, text, text + size);
+	int code =
+		is_json(text, text + size) ? parse_json(&reader, text, size) : parse_lines(&reader, text, text + size);
 	if (code == 0)
 		code = check(&reader);
 	if (code == 0)

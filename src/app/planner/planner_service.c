@@ -52,7 +52,7 @@ struct planner_service {
 	pthread_cond_t wake;
 	bool stop;
 	bool has_request, busy;
-	uint64_t run; /* number of the running or last search */
+	uint64_t run;	    /* number of the running or last search */
 	int64_t present_id; /* newest id taken */
 	struct asked asked;
 	billiard_plan_t answer[ANSWER_MAX];

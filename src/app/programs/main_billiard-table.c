@@ -220,7 +220,8 @@ static int set_balls(struct virtual_process *p, const char *path, char *err, siz
 		char reason[160];
 		player_rack(&c->table, position.ball);
 		position.count = BALL_MAX;
-		if (table_check_balls(&c->table, position.ball, BALL_MAX, &(int){0}, &(int){0}, reason, sizeof reason) < 0) {
+		if (table_check_balls(&c->table, position.ball, BALL_MAX, &(int){0}, &(int){0}, reason, sizeof reason) <
+		    0) {
 			snprintf(err, err_size, "%.100s: table.spots: no opening position: %.100s", c->path, reason);
 			return -EINVAL;
 		}
