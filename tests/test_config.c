@@ -285,6 +285,33 @@ START_TEST(no_key_may_be_missing)
 }
 END_TEST
 
+/* A key that came later may be missing: then the value counts that changes nothing. Given, it is read with its unit. */
+START_TEST(later_keys_have_defaults)
+{
+	char *good = shipped(THESIS), path[64], err[ERR_SIZE];
+	ck_assert_msg(load_text(good, strlen(good), &config, path, err) == 0, "%s", err);
+	ck_assert(!config.table.bed.uneven && config.table.bed.slope.x == 0 && config.table.bed.bowl[2] == 0);
+	char *text =
+		replaced(good, "	d_radius", "	slope = ( 1.5, -2.0 ); bowl = ( 0.5, 0.0, -1.0 );\n	d_radius");
+	ck_assert_msg(load_text(text, strlen(text), &config, path, err) == 0, "%s", err);
+	ck_assert(config.table.bed.uneven);
+	ck_assert_double_eq_tol(config.table.bed.slope.x, 1.5e-3, 1e-18);
+	ck_assert_double_eq_tol(config.table.bed.slope.y, -2e-3, 1e-18);
+	ck_assert_double_eq_tol(config.table.bed.bowl[0], 5e-4, 1e-18);
+	ck_assert_double_eq_tol(config.table.bed.bowl[2], -1e-3, 1e-18);
+	free(text);
+	text = replaced(good, "	d_radius", "	slope = ( 19.0, 0.0 );\n	d_radius");
+	ck_assert_int_eq(load_text(text, strlen(text), &config, path, err), -EINVAL);
+	ck_assert_msg(strstr(err, "steep") != NULL, "%s", err);
+	free(text);
+	text = replaced(good, "	d_radius", "	slope = ( 1.0 );\n	d_radius");
+	ck_assert_int_eq(load_text(text, strlen(text), &config, path, err), -EINVAL);
+	ck_assert_msg(strstr(err, "slope: found a list of 1, allowed 2 numbers -20 to 20 mm/m") != NULL, "%s", err);
+	free(text);
+	free(good);
+}
+END_TEST
+
 START_TEST(sections_may_not_be_missing)
 {
 	char *good = shipped(THESIS), path[64], err[ERR_SIZE], wanted[ERR_SIZE];
@@ -396,6 +423,7 @@ Suite *test_suite(void)
 	tcase_set_timeout(errors, 60);
 	tcase_add_loop_test(errors, error_names_place_and_range, 0, sizeof bad / sizeof *bad);
 	tcase_add_test(errors, no_key_may_be_missing);
+	tcase_add_test(errors, later_keys_have_defaults);
 	tcase_add_test(errors, sections_may_not_be_missing);
 	tcase_add_test(errors, what_is_no_file);
 	tcase_add_test(errors, damaged_files);

@@ -92,6 +92,7 @@ static struct shot random_shot(struct random *r)
 struct watch {
 	const struct table *table;
 	bool jaws;
+	double slack;		     /* J, by which energy may seem to grow */
 	double energy, start_energy; /* J */
 	double overlap;		     /* m, deepest so far */
 	double gain;		     /* share, largest growth of energy so far */
@@ -141,8 +142,10 @@ static void watch_step(struct watch *w, const struct sim *before, const struct s
 	double energy = sim_energy(sim);
 	/* the clock's rounding, times an acceleration, is a velocity: below a billionth of the shot's energy it shows
 	 */
-	if (!may_gain(before, event) && w->energy > 0)
-		w->gain = fmax(w->gain, (energy - w->energy) / fmax(w->energy, 1e-9 * w->start_energy));
+	bool falls = w->slack > 0 && event->kind == EVENT_POCKET; /* takes its height with it */
+	if (!may_gain(before, event) && !falls && w->start_energy != 0)
+		w->gain = fmax(w->gain,
+			       (energy - w->energy - w->slack) / fmax(fabs(w->energy), 1e-9 * fabs(w->start_energy)));
 	w->energy = energy;
 	struct ball now[BALL_MAX], middle[BALL_MAX];
 	double half = 0.5 * (sim->time - before->time);
@@ -184,7 +187,9 @@ static void run_watched(struct watch *w, struct sim *sim)
 static void check_invariants(const char *name, const struct table *table, const struct model *model, int shots)
 {
 	struct random r = random_begin(name);
-	struct watch w = {.table = table, .jaws = model->pocket == POCKET_MODEL_JAWS};
+	/* on pieces the energy is as exact as the place: 10 um of 4 mm per metre, and a slow ball's 0.1 mm/s */
+	struct watch w = {
+		.table = table, .jaws = model->pocket == POCKET_MODEL_JAWS, .slack = table->bed.uneven ? 3e-7 : 0};
 	static struct sim sim;
 	int most = 0;
 	for (int i = 0; i < shots; i++) {
@@ -242,6 +247,19 @@ START_TEST(invariants_no_pockets)
 	char name[64];
 	snprintf(name, sizeof name, "invariants %s, no pockets", every_model[_i]);
 	check_invariants(name, &table, &model, shots_wanted(_i == 4 ? 300 : 3000));
+}
+END_TEST
+
+/* A plane and a bowl: pieces of paths instead of closed forms. */
+START_TEST(invariants_uneven)
+{
+	struct table table = scene_snooker_table();
+	table.bed = (struct bed){.slope = {1.5e-3, -2e-3}, .bowl = {5e-4, -5e-4, 1e-3}};
+	ck_assert_int_eq(table_finish(&table, NULL, 0), 0);
+	struct model model = model_named(every_model[_i]);
+	char name[64];
+	snprintf(name, sizeof name, "invariants %s, uneven table", every_model[_i]);
+	check_invariants(name, &table, &model, shots_wanted(_i == 4 ? 200 : 1000));
 }
 END_TEST
 
@@ -596,6 +614,7 @@ Suite *test_suite(void)
 	tcase_add_loop_test(invariants, invariants_thesis_table, 0, MODELS);
 	tcase_add_loop_test(invariants, invariants_snooker_table, 0, MODELS);
 	tcase_add_loop_test(invariants, invariants_no_pockets, 0, MODELS);
+	tcase_add_loop_test(invariants, invariants_uneven, 0, MODELS);
 	suite_add_tcase(suite, invariants);
 	return suite;
 }

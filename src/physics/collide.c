@@ -92,13 +92,16 @@ static void lift_balls(const struct sim *sim, struct ball *a, struct ball *b)
 
 static void lift_at_cushion(const struct sim *sim, vec2 normal, struct ball *ball)
 {
-	if (ball->phase != BALL_SLIDING)
-		return; /* a rolling path is straight: it leads away for good */
+	bool rolls = ball->phase == BALL_ROLLING;
+	if (ball->phase != BALL_SLIDING && !(rolls && sim->table->bed.uneven))
+		return; /* a rolling path on a level bed is straight: it leads away for good */
 	double r = sim->table->ball_radius;
 	double press = -vec2_dot(motion_acceleration(ball, sim->table), normal);
 	double leave = vec2_dot(ball->vel, normal);
 	double before = energy(ball, r);
 	double lift = lift_speed(sim, press, sqrt(before));
+	if (rolls)
+		lift = fmin(0.5 * press * ROLL_PRESS_INTERVAL, LIFT_SHARE * sqrt(before));
 	if (leave >= lift)
 		return;
 	ball->vel = vec2_madd(ball->vel, lift - leave, normal);

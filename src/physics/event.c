@@ -15,6 +15,7 @@ const char *event_kind_name(enum event_kind kind)
 {
 	static const char *const names[EVENT_KIND_COUNT] = {
 		"none",	       "strike",	  "ball_ball",	      "ball_linear_cushion", "ball_circular_cushion",
-		"ball_pocket", "sliding_rolling", "rolling_spinning", "rolling_stationary",  "spinning_stationary"};
+		"ball_pocket", "sliding_rolling", "rolling_spinning", "rolling_stationary",  "spinning_stationary",
+		"next_piece"};
 	return (unsigned)kind < EVENT_KIND_COUNT ? names[kind] : "none";
 }

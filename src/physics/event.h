@@ -18,6 +18,7 @@ enum event_kind {
 	EVENT_ROLLING_SPINNING,
 	EVENT_ROLLING_REST,
 	EVENT_SPINNING_REST,
+	EVENT_PIECE, /* the next piece of a path on an uneven bed: nothing but the form of the path changes */
 	EVENT_KIND_COUNT
 };
 
@@ -32,7 +33,7 @@ struct event {
 int event_compare(const struct event *a, const struct event *b);
 
 /* "strike", "ball_ball", "ball_linear_cushion", "ball_circular_cushion", "ball_pocket", "sliding_rolling",
- * "rolling_spinning", "rolling_stationary", "spinning_stationary". */
+ * "rolling_spinning", "rolling_stationary", "spinning_stationary", "next_piece". */
 const char *event_kind_name(enum event_kind kind);
 
 #endif

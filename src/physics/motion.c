@@ -2,6 +2,7 @@
 
 #include <assert.h>
 
+#include "physics/bed.h"
 #include "physics/tolerances.h"
 
 vec2 motion_slip(const struct ball *ball, double radius)
@@ -9,9 +10,16 @@ vec2 motion_slip(const struct ball *ball, double radius)
 	return (vec2){ball->vel.x - radius * ball->spin[1], ball->vel.y + radius * ball->spin[0]};
 }
 
+static bool on_pieces(const struct ball *ball, const struct table *table)
+{
+	return table->bed.uneven && (ball->phase == BALL_SLIDING || ball->phase == BALL_ROLLING);
+}
+
 vec2 motion_acceleration(const struct ball *ball, const struct table *table)
 {
 	const struct material *m = &table->material;
+	if (on_pieces(ball, table))
+		return bed_piece(ball, table).acceleration;
 	if (ball->phase == BALL_SLIDING)
 		return vec2_scale(vec2_unit(motion_slip(ball, table->ball_radius)), -m->mu_slide * m->gravity);
 	if (ball->phase == BALL_ROLLING)
@@ -26,10 +34,25 @@ static double spin_decay(const struct table *table)
 	return 2.5 * m->mu_spin * m->gravity / (table->ball_radius * table->ball_radius);
 }
 
+static double piece_end(const struct ball *ball, const struct table *table, enum event_kind *kind)
+{
+	struct bed_piece piece = bed_piece(ball, table);
+	bool spins = fabs(ball->spin[2]) > spin_decay(table) * piece.duration;
+	if (!piece.last)
+		*kind = EVENT_PIECE;
+	else if (ball->phase == BALL_SLIDING)
+		*kind = EVENT_SLIDING_ROLLING;
+	else
+		*kind = spins ? EVENT_ROLLING_SPINNING : EVENT_ROLLING_REST;
+	return piece.duration;
+}
+
 double motion_phase_end(const struct ball *ball, const struct table *table, enum event_kind *kind)
 {
 	const struct material *m = &table->material;
 	double t;
+	if (on_pieces(ball, table))
+		return piece_end(ball, table, kind);
 	switch (ball->phase) {
 	case BALL_SLIDING:
 		/* du/dt = -7/2 mu_s g: translation and rotation both act against the slip (8.8) */
@@ -63,7 +86,9 @@ struct ball motion_advance_by(const struct ball *ball, const struct table *table
 	b.vel = vec2_madd(b.vel, dt, acceleration);
 	double rest = fabs(b.spin[2]) - spin_decay(table) * dt;
 	b.spin[2] = rest > 0 ? copysign(rest, b.spin[2]) : 0;
-	if (b.phase == BALL_SLIDING) {
+	if (on_pieces(ball, table)) {
+		bed_turn(ball, table, dt, &b);
+	} else if (b.phase == BALL_SLIDING) {
 		/* the friction that slows the ball by a turns it by 5/(2 r) a */
 		double k = 2.5 / table->ball_radius * dt;
 		b.spin[0] += k * acceleration.y;
@@ -82,7 +107,12 @@ struct ball motion_advance(const struct ball *ball, const struct table *table, d
 void motion_transition(struct ball *ball, const struct table *table, enum event_kind kind)
 {
 	switch (kind) {
+	case EVENT_PIECE:
+		return;
 	case EVENT_SLIDING_ROLLING:
+		/* what is left of the slip at the end of a last piece goes as the rest went: 2/7 of it off the velocity */
+		if (table->bed.uneven)
+			ball->vel = vec2_madd(ball->vel, -2.0 / 7, motion_slip(ball, table->ball_radius));
 		roll(ball, table->ball_radius);
 		ball->phase = BALL_ROLLING;
 		if (vec2_norm(ball->vel) >= REST_SPEED)

@@ -1,4 +1,5 @@
-/* Closed-form motion of one ball on the cloth, in every phase. Pure functions.
+/* Motion of one ball on the cloth, in every phase: closed forms on a level bed, pieces of them on an uneven one (bed.h),
+ * where a "phase" below is a piece. Pure functions.
  * Sliding: slip u = v + r (e_z x w) keeps its direction; dv/dt = -mu_s g u/|u|; the path is a parabola. Rolling:
  * straight, dv/dt = -mu_r g v/|v|. Vertical spin decays by 5 mu_sp g / (2 r^2) in every phase. (Thesis 8.1-8.10;
  * pooltool meta.doc) */

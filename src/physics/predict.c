@@ -20,6 +20,10 @@ struct motion predict_motion(const struct table *table, const struct ball *ball,
 	} else {
 		m.reach = 0.5 * m.speed * duration;
 	}
+	if (table->bed.uneven) {
+		m.reach = m.speed * duration + 0.5 * vec2_norm(m.acceleration) * duration * duration;
+		m.straight = false;
+	}
 	return m;
 }
 

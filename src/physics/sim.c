@@ -3,6 +3,7 @@
 #include <assert.h>
 #include <string.h>
 
+#include "physics/bed.h"
 #include "physics/collide.h"
 #include "physics/motion.h"
 
@@ -13,45 +14,39 @@ static struct mover mover(const struct sim *sim, int i)
 	return (struct mover){&sim->ball[i], &sim->motion[i]};
 }
 
-static struct predictor predictor(struct sim *sim)
-{
-	return (struct predictor){sim->table, &sim->model, &sim->solved};
-}
-
 /* A touched ball's motion is new: its own event and its row and column of pairs with it. */
-static void renew_motion(struct sim *sim, int i)
+static void renew_motion(struct sim *sim, const struct predictor *by, int i)
 {
-	struct predictor by = predictor(sim);
 	sim->motion[i] = predict_motion(sim->table, &sim->ball[i], sim->ball_time[i]);
 	struct mover self = mover(sim, i);
-	struct event own = predict_own(&by, &self, i);
+	struct event own = predict_own(by, &self, i);
 	queue_set_own(&sim->queue, i, &own);
 }
 
-static void renew_pair(struct sim *sim, int low, int high)
+/* Pairs of ball i with the others; those with balls in `done` are new already. */
+static void renew_pairs(struct sim *sim, const struct predictor *by, int i, uint32_t done)
 {
-	struct predictor by = predictor(sim);
-	struct mover a = mover(sim, low), b = mover(sim, high);
-	queue_set_pair(&sim->queue, low, high, predict_pair(&by, &a, &b, sim->time));
+	struct mover self = mover(sim, i);
+	for (int k = 0; k < sim->ball_count; k++) {
+		if (k == i || done >> k & 1)
+			continue;
+		struct mover other = mover(sim, k);
+		double time = INFINITY;
+		if (other.ball->phase != BALL_POTTED && self.ball->phase != BALL_POTTED)
+			time = i < k ? predict_pair(by, &self, &other, sim->time)
+				     : predict_pair(by, &other, &self, sim->time);
+		queue_set_pair(&sim->queue, i < k ? i : k, i < k ? k : i, time);
+	}
 }
 
 static void renew(struct sim *sim, uint32_t balls)
 {
-	for (int i = 0; i < sim->ball_count; i++) {
-		if (balls >> i & 1)
-			renew_motion(sim, i);
-	}
-	for (int i = 0; i < sim->ball_count; i++) {
-		if (!(balls >> i & 1))
-			continue;
-		for (int k = 0; k < sim->ball_count; k++) {
-			if (k == i || (k < i && (balls >> k & 1)))
-				continue;
-			if (sim->ball[k].phase == BALL_POTTED || sim->ball[i].phase == BALL_POTTED)
-				queue_set_pair(&sim->queue, i < k ? i : k, i < k ? k : i, INFINITY);
-			else
-				renew_pair(sim, i < k ? i : k, i < k ? k : i);
-		}
+	struct predictor by = {sim->table, &sim->model, &sim->solved};
+	for (uint32_t left = balls; left; left &= left - 1)
+		renew_motion(sim, &by, __builtin_ctz(left));
+	for (uint32_t left = balls; left; left &= left - 1) {
+		int i = __builtin_ctz(left);
+		renew_pairs(sim, &by, i, balls & ((1u << i) - 1));
 	}
 }
 
@@ -281,7 +276,9 @@ double sim_energy(const struct sim *sim)
 		if (sim->model.thesis_motion)
 			w2 = 0;
 		if (b.phase != BALL_POTTED)
-			sum += 0.5 * sim->table->ball_mass * (vec2_norm2(b.vel) + 0.4 * r * r * w2);
+			sum += sim->table->ball_mass *
+			       (0.5 * (vec2_norm2(b.vel) + 0.4 * r * r * w2) +
+				sim->table->material.gravity * bed_height(&sim->table->bed, b.pos));
 	}
 	return sum;
 }

@@ -5,6 +5,7 @@
 #include <stdio.h>
 #include <string.h>
 
+#include "physics/bed.h"
 #include "physics/tolerances.h"
 
 __attribute__((format(printf, 3, 4))) static int refuse(char *err, size_t err_size, const char *format, ...)
@@ -191,11 +192,27 @@ static void finish_regions(struct table *t)
 	}
 }
 
+static int finish_bed(struct table *t, char *err, size_t err_size)
+{
+	struct bed *bed = &t->bed;
+	if (!in_range(bed->path_error, 0, 1e-3))
+		return refuse(err, err_size, "path error %g m is not within 0 to 0.001 m", bed->path_error);
+	if (bed->path_error == 0)
+		bed->path_error = PATH_ERROR;
+	bed->uneven =
+		bed->slope.x != 0 || bed->slope.y != 0 || bed->bowl[0] != 0 || bed->bowl[1] != 0 || bed->bowl[2] != 0;
+	if (bed->uneven && !bed_holds(t))
+		return refuse(err, err_size, "the bed is so steep that no ball would come to rest");
+	return 0;
+}
+
 int table_finish(struct table *table, char *err, size_t err_size)
 {
 	int r = check_sizes(table, err, err_size);
 	if (r == 0)
 		r = check_material(&table->material, err, err_size);
+	if (r == 0)
+		r = finish_bed(table, err, err_size);
 	for (int i = 0; r == 0 && i < table->cushion_count; i++)
 		r = finish_cushion(table, i, err, err_size);
 	if (r == 0)

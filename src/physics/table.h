@@ -44,6 +44,15 @@ struct table_region {
 	uint32_t cushions, jaws, pockets;
 };
 
+/* The bed's height over its middle: slope.x x + slope.y y + (bowl[0] x^2 + 2 bowl[1] x y + bowl[2] y^2) / 2. All 0: level,
+ * and then motion has closed forms. */
+struct bed {
+	vec2 slope;	   /* rise per way at the middle, along x and y */
+	double bowl[3];	   /* 1/m, change of slope per way: xx, xy, yy */
+	double path_error; /* m, of a path between the ends of its pieces (bed.h); 0: PATH_ERROR */
+	bool uneven;	   /* computed by table_finish() */
+};
+
 /* Material and contact constants. Every model reads only its own. */
 struct material {
 	double gravity;	 /* m/s^2 */
@@ -69,6 +78,7 @@ struct table {
 	double length, width; /* m, inner size along x and y */
 	double ball_radius;   /* m */
 	double ball_mass;     /* kg */
+	struct bed bed;
 	struct cushion cushion[CUSHION_MAX];
 	int cushion_count;
 	struct jaw jaw[JAW_MAX];

@@ -13,6 +13,18 @@ static const double REST_SPEED = 1e-8;
  * slides of 1e-16 s; larger: a ball struck to roll at once is forced to. */
 static const double SLIP_ROUNDING = 1e-13;
 
+/* ---- a bed that is not level ---- */
+
+/* m, when a table names none (bed.path_error). The path between the ends of a piece is nowhere farther from the true
+ * one. A tenth of what a camera resolves; a tenth of it takes twice the pieces. */
+static const double PATH_ERROR = 1e-5;
+/* Share of it that a phase's last piece, taken as if the pull across did not turn the ball, may be off at its end. */
+static const double LAST_PIECE = 0.025;
+/* rad, by which the direction may turn in a piece: keeps the Runge-Kutta step's own error below 1e-6 m. */
+static const double PIECE_TURN = 0.25;
+/* Share of the slope at which a resting ball would begin to roll: steeper beds are refused. */
+static const double STEEPEST = 0.9;
+
 /* ---- prediction of contacts ---- */
 
 /* Share of the sizes of two velocities or accelerations: a smaller difference is none. Two units in the last place.
@@ -56,6 +68,8 @@ enum { TOPSPIN_MAX = 32 };
  * ever faster (Luding and McNamara 1998 bound it likewise). Smaller: more events; larger: pressed balls wander. */
 static const double PRESS_INTERVAL = 2e-3;
 static const double PRESS_SHARE = 2e-3;
+/* s, the same for a ball that a slope rolls along a cushion: it leaves it by less than 10 um. */
+static const double ROLL_PRESS_INTERVAL = 0.05;
 /* Share of the pair's root mean square speed; at most this much goes into keeping them apart. */
 static const double LIFT_SHARE = 0.2;
 

@@ -26,6 +26,8 @@ static const struct {
 	[UNIT_PX] = {" px", 1},
 	[UNIT_GREY] = {" grey levels", 1},
 	[UNIT_S_M] = {" s/m", 1},
+	[UNIT_MM_M] = {" mm/m", 1000},
+	[UNIT_MM_M2] = {" mm/m^2", 1000},
 };
 
 /* ---- messages ---------------------------------------------------------------------------------------------------- */
@@ -276,12 +278,25 @@ static int refuse_unknown(struct config_reader *reader, const config_setting_t *
 	return 0;
 }
 
+/* A key that came later has a value that changes nothing: older files stay valid. */
+static void fall_back(const struct config_key *key, char *base)
+{
+	double *out = (double *)(void *)(base + key->offset);
+	size_t count = key->type == CONFIG_NUMBERS ? key->size : 1;
+	for (size_t i = 0; i < count; i++)
+		out[i] = key->fallback / unit_table[key->unit].per_si;
+}
+
 int config_reader_group(struct config_reader *reader, const config_setting_t *group, const struct config_key *keys,
 			void *base)
 {
 	int code = refuse_unknown(reader, group, keys);
 	for (const struct config_key *key = keys; code == 0 && key->name; key++) {
 		const config_setting_t *setting = config_setting_get_member((config_setting_t *)group, key->name);
+		if (!setting && key->optional) {
+			fall_back(key, base);
+			continue;
+		}
 		if (!setting) {
 			char allowed[CONFIG_ALLOWED_SIZE];
 			config_reader_allowed(key, allowed, sizeof allowed);

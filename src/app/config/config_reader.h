@@ -3,6 +3,7 @@
 #define BILLIARD_APP_CONFIG_READER_H
 
 #include <libconfig.h>
+#include <stdbool.h>
 #include <stddef.h>
 
 enum config_type {
@@ -30,6 +31,8 @@ enum config_unit {
 	UNIT_PX,
 	UNIT_GREY,
 	UNIT_S_M,
+	UNIT_MM_M,
+	UNIT_MM_M2,
 	UNIT_COUNT
 };
 
@@ -43,6 +46,8 @@ struct config_key {
 	size_t size;		       /* TEXT: bytes; NUMBERS: how many; LIST: bytes of an element */
 	size_t count_offset;	       /* LIST: an int for the number of elements */
 	const struct config_key *keys; /* SECTION, LIST */
+	bool optional;		       /* NUMBER, NUMBERS: may be missing, then `fallback` counts */
+	double fallback;	       /* in the file's unit */
 };
 
 struct config_reader {

@@ -32,6 +32,17 @@
 	{                                                                                                              \
 		.name = key, .type = CONFIG_NUMBERS, .unit = unit_, .offset = at, RANGE(low, high), .size = n          \
 	}
+/* The same with a value for files that do not have the key. */
+#define NUMBER_OR(fallback_, key, unit_, low, high, at)                                                                \
+	{                                                                                                              \
+		.name = key, .type = CONFIG_NUMBER, .unit = unit_, .offset = at, RANGE(low, high), .optional = true,   \
+		.fallback = fallback_                                                                                  \
+	}
+#define NUMBERS_OR(fallback_, key, n, unit_, low, high, at)                                                            \
+	{                                                                                                              \
+		.name = key, .type = CONFIG_NUMBERS, .unit = unit_, .offset = at, RANGE(low, high), .size = n,         \
+		.optional = true, .fallback = fallback_                                                                \
+	}
 #define POINT(key, at) NUMBERS(key, 2, UNIT_MM, -5000, 5000, at)
 #define SECTION(key, table)                                                                                            \
 	{                                                                                                              \
@@ -88,6 +99,8 @@ static const struct config_key table_keys[] = {
 	NUMBER("nose_height", UNIT_MM, 10, 80, AT(nose_height)),
 	POINT("d_centre", AT(config.table.baulk_d_centre)),
 	NUMBER("d_radius", UNIT_MM, 10, 1000, AT(config.table.baulk_d_radius)),
+	NUMBERS_OR(0, "slope", 2, UNIT_MM_M, -20, 20, AT(config.table.bed.slope)),
+	NUMBERS_OR(0, "bowl", 3, UNIT_MM_M2, -20, 20, AT(config.table.bed.bowl)),
 	SECTION("spots", spot_keys),
 	LIST("cushions", 4, CUSHION_MAX, config.table.cushion, config.table.cushion_count, cushion_keys),
 	LIST("jaws", 0, JAW_MAX, config.table.jaw, config.table.jaw_count, jaw_keys),
