@@ -31,6 +31,9 @@ APP_LIGHT := animation draw draw_field draw_path draw_proposal keyframe picture 
 APP_PLANNER := plan_check plan_message planner_service request_message
 APP_VIRTUAL := table_scene table_camera table_camera_ball player
 APP_COMMANDS := cmd cmd_calibrate cmd_demo cmd_detect cmd_plan cmd_run cmd_simulate cmd_status overlay plot
+APP_PROCESS += event_log private_bus
+APP_VIRTUAL += judge_match
+APP_COMMANDS += cmd_judge cmd_judge_replay
 APP := $(addprefix process/,$(APP_PROCESS)) $(addprefix config/,$(APP_CONFIG)) $(addprefix control/,$(APP_CONTROL)) \
 	$(addprefix light/,$(APP_LIGHT)) $(addprefix planner/,$(APP_PLANNER)) $(addprefix virtual/,$(APP_VIRTUAL)) \
 	$(addprefix commands/,$(APP_COMMANDS))
@@ -43,6 +46,7 @@ TESTS := signature message_check fsm stability plan_message controller planner_s
 	ball bed contact predict event inverse model motion queue roots sim sim_hard table trace \
 	calibration camera pose scan fit colour stabilise image_io capture stages track vision vision_photos
 TEST_SHARED := harness brute_force bus_fixture service_fixture planner_client random poly_judge scenes search_scenes shot_compare thesis_lists vision_rig vision_scene
+TESTS += event_log judge_match
 # tests that are scripts: tests/NAME.sh, called with the build folder
 TEST_SCRIPTS := cli demo planner units
 # bench/bench_NAME.c each; bench/NAME.c shared by them

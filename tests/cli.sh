@@ -129,6 +129,19 @@ refused 'cut.json:' simulate --shot "$folder/cut.json"
 refused 'empty.json:' simulate --shot "$folder/empty.json"
 refused 'wants one position, or one --shot' simulate --shot "$folder/empty.json" "$folder/pot.txt"
 
+# ---- judge: what is no log
+refused 'no log' judge
+refused 'takes no log' judge --live "$folder/text.png"
+refused 'nonexistent.lcmlog' judge --replay "$folder/nonexistent.lcmlog"
+refused 'pot.txt: byte 0' judge --replay "$folder/pot.txt"
+loop=${DATA:-../shared/data}/loop
+if [ -r "$loop/catch-1.lcmlog" ]; then
+	works '"balls":14.*"frames":89,"frames_lost":0' judge --replay --json "$loop/catch-1.lcmlog"
+	refused 'holds no CAMERA' judge --replay --json "$loop/C-471-seen-twice-4-requests.lcmlog"
+	head -c 5000000 "$loop/catch-1.lcmlog" >"$folder/cut.lcmlog"
+	refused 'cut.lcmlog: byte 49[0-9]*: an event cut short' judge --replay --json "$folder/cut.lcmlog"
+fi
+
 # ---- detect: what is no photograph. What is one, tests/ and eval see to.
 printf 'P6 1 1 255 abc' >"$folder/text.png"
 refused 'wants images' detect

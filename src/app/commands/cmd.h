@@ -17,6 +17,7 @@ int cmd_run(int argc, char **argv);
 int cmd_status(int argc, char **argv);
 int cmd_control(int argc, char **argv);
 int cmd_demo(int argc, char **argv);
+int cmd_judge(int argc, char **argv);
 
 /* One line on stderr. Returns CMD_BAD_INPUT. */
 int cmd_bad_input(const char *format, ...) __attribute__((format(printf, 1, 2)));

@@ -17,6 +17,7 @@ static const struct command {
 	{"run", "starts all services of a configuration", cmd_run},
 	{"status", "how the running services are", cmd_status},
 	{"control", "tells the running services something", cmd_control},
+	{"judge", "what was believed, asked for and drawn, against the truth", cmd_judge},
 	{"demo", "the whole loop on the virtual table or on photographs", cmd_demo},
 };
 enum { COMMAND_COUNT = sizeof command_table / sizeof *command_table };
