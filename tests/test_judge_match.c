@@ -1,7 +1,5 @@
 #include "app/virtual/judge_match.h"
 
-#include <math.h>
-
 #include "app/process/ball_message.h"
 #include "harness.h"
 
@@ -87,7 +85,7 @@ START_TEST(an_empty_table_and_an_empty_belief)
 }
 END_TEST
 
-START_TEST(messages_are_checked)
+START_TEST(potted_balls_are_no_balls)
 {
 	struct judge_position p = three();
 	billiard_ball_t ball[3];
@@ -96,14 +94,11 @@ START_TEST(messages_are_checked)
 		b.phase = i == 1 ? BALL_POTTED : BALL_REST;
 		ball_to_message(&ball[i], &b, "", i + 1);
 	}
-	ck_assert(judge_position_from(&p, ball, 3));
+	judge_position_from(&p, ball, 3);
 	ck_assert_int_eq(p.count, 2);
 	ck_assert_int_eq(p.ball[1].track, 3);
-	ball[2].x = NAN;
-	ck_assert(!judge_position_from(&p, ball, 3));
-	ck_assert(!judge_position_from(&p, ball, -1));
-	ck_assert(!judge_position_from(&p, ball, 23));
-	ck_assert_int_eq(p.count, 2);
+	judge_position_from(&p, ball, 0);
+	ck_assert_int_eq(p.count, 0);
 }
 END_TEST
 
@@ -115,7 +110,7 @@ Suite *test_suite(void)
 	tcase_add_test(match, each_fault_is_told_by_its_kind);
 	tcase_add_test(match, a_ball_seen_twice_is_a_double);
 	tcase_add_test(match, an_empty_table_and_an_empty_belief);
-	tcase_add_test(match, messages_are_checked);
+	tcase_add_test(match, potted_balls_are_no_balls);
 	suite_add_tcase(suite, match);
 	return suite;
 }

@@ -150,25 +150,15 @@ static void play(struct replay *r)
 	r->lost += !r->answered;
 }
 
-static bool decode(const struct bus_type *type, const struct log_event *event, void *message)
-{
-	if (type->check && !type->check(event->data, event->size))
-		return false;
-	int used = type->decode(event->data, 0, (int)event->size, message);
-	if (used >= 0 && (size_t)used != event->size)
-		type->cleanup(message);
-	return used >= 0 && (size_t)used == event->size;
-}
-
 static int play_event(struct replay *r, const struct log_event *event, const char *path, char *err, size_t err_size)
 {
 	if (strcmp(event->channel, "TRUTH") == 0) {
-		if (!decode(&bus_table_state, event, &r->truth))
+		if (!log_event_decode(event, &bus_table_state, &r->truth))
 			return refuse(path, "TRUTH is malformed or of another version", err, err_size);
 		r->has_truth = true;
 	}
 	if (strcmp(event->channel, "CAMERA") == 0) {
-		if (!decode(&bus_image, event, &r->frame))
+		if (!log_event_decode(event, &bus_image, &r->frame))
 			return refuse(path, "CAMERA is malformed or of another version", err, err_size);
 		play(r);
 		bus_image.cleanup(&r->frame);
@@ -213,10 +203,8 @@ static int report(const struct replay *r, const char *path, const struct config 
 {
 	struct judge_position real, seen;
 	struct judge_match match;
-	if (!judge_position_from(&real, r->truth.balls, r->truth.ball_count))
-		return cmd_bad_input("%s: TRUTH is out of range", path);
-	if (r->seen.calibration == 0 || !judge_position_from(&seen, r->seen.balls, r->seen.ball_count))
-		seen = (struct judge_position){0};
+	judge_position_from(&real, r->truth.balls, r->truth.ball_count);
+	judge_position_from(&seen, r->seen.balls, r->seen.calibration != 0 ? r->seen.ball_count : 0);
 	judge_match(&real, &seen, 2 * config->table.ball_radius, &match);
 	double error = 1e3 * match.max_error;
 	if (!json) {
@@ -238,8 +226,8 @@ static int judge_one(const struct config *config, const struct judge_options *op
 	if (check_log(path, err, sizeof err) < 0)
 		return cmd_bad_input("%s", err);
 	int code = bus_open(&r.bus, url, err, sizeof err), status = CMD_FAILED;
-	code = code < 0 ? code : bus_subscribe(r.bus, "TABLE_STATE", &bus_table_state, BUS_EACH, on_state, &r);
-	code = code < 0 ? code : bus_subscribe(r.bus, "STATUS", &bus_status, BUS_EACH, on_status, &r);
+	code = code < 0 ? code : bus_subscribe(r.bus, &(struct bus_subscription){"TABLE_STATE", &bus_table_state, BUS_EACH, on_state, &r});
+	code = code < 0 ? code : bus_subscribe(r.bus, &(struct bus_subscription){"STATUS", &bus_status, BUS_EACH, on_status, &r});
 	code = code < 0 ? code : start_vision(&r, config, url, err, sizeof err);
 	if (code == 0) {
 		code = play_log(&r, path, err, sizeof err);

@@ -119,6 +119,20 @@ int event_log_next(struct event_log *log, struct log_event *event, char *err, si
 	return 1;
 }
 
+bool log_event_decode(const struct log_event *event, const struct bus_type *type, void *message)
+{
+	char reason[128];
+	if (type->check && !type->check(event->data, event->size))
+		return false;
+	int used = type->decode(event->data, 0, (int)event->size, message);
+	if (used < 0)
+		return false;
+	if ((size_t)used == event->size && message_check(type->table, message, reason, sizeof reason))
+		return true;
+	type->cleanup(message);
+	return false;
+}
+
 int event_log_write(FILE *file, int64_t number, const struct log_event *event)
 {
 	uint8_t header[HEADER_SIZE];

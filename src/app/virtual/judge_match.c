@@ -1,6 +1,7 @@
 #include "app/virtual/judge_match.h"
 
 #include <math.h>
+#include <stdbool.h>
 
 #include "app/process/ball_message.h"
 
@@ -8,23 +9,17 @@
  * apart before they are asked for. In reaches. */
 static const double DOUBLE_REACH = 1.25;
 
-bool judge_position_from(struct judge_position *out, const billiard_ball_t *ball, int count)
+void judge_position_from(struct judge_position *out, const billiard_ball_t *ball, int count)
 {
-	struct judge_position p = {0};
-	if (count < 0 || count > BALL_MAX)
-		return false;
+	out->count = 0;
 	for (int i = 0; i < count; i++) {
-		struct ball b;
-		if (!ball_from_message(&b, &ball[i]))
-			return false;
+		struct ball b = ball_from_message(&ball[i]);
 		if (b.phase == BALL_POTTED)
 			continue;
-		p.ball[p.count].at = b.pos;
-		p.ball[p.count].colour = b.colour;
-		p.ball[p.count++].track = ball[i].track;
+		out->ball[out->count].at = b.pos;
+		out->ball[out->count].colour = b.colour;
+		out->ball[out->count++].track = ball[i].track;
 	}
-	*out = p;
-	return true;
 }
 
 static double distance(const struct judge_position *a, int i, const struct judge_position *b, int k)

@@ -2,8 +2,6 @@
 #ifndef BILLIARD_APP_JUDGE_MATCH_H
 #define BILLIARD_APP_JUDGE_MATCH_H
 
-#include <stdbool.h>
-
 #include "lcmtypes/billiard_ball_t.h"
 #include "physics/ball.h"
 
@@ -17,8 +15,8 @@ struct judge_position {
 	} ball[BALL_MAX];
 };
 
-/* Takes the balls of a message that are not potted. False, out untouched, when a number is out of range. */
-bool judge_position_from(struct judge_position *out, const billiard_ball_t *ball, int count);
+/* Takes those balls of a checked message that are not potted. */
+void judge_position_from(struct judge_position *out, const billiard_ball_t *ball, int count);
 
 /* Each believed ball is given to at most one real one, the nearest pairs first, never farther than reach. */
 struct judge_match {
