@@ -70,8 +70,8 @@ void brute_force(const struct table *table, const struct model *model, const str
 		int potted = clean_pot(&trace, 0, &pocket);
 		if (potted < 0 || is_potted(&trace, 0) || (result->pots[potted] >> pocket & 1))
 			continue;
-		uint32_t others = ~(1u | 1u << potted);
-		if (!segment_is_free(ball, count, others, ball[potted].pos, table->pocket[pocket].centre,
+		const struct obstacles others = {ball, count, ~(1u | 1u << potted)};
+		if (!segment_is_free(&others, ball[potted].pos, table->pocket[pocket].centre,
 				     2 * table->ball_radius + clearance))
 			continue;
 		result->pots[potted] |= (uint8_t)(1u << pocket);

@@ -123,6 +123,32 @@ static void check_chain(const struct stage *s, const struct node *parent, const 
 		ck_assert(vec2_dot(node->after, parent->after) > cos(s->profile.max_cut) - 1e-12);
 }
 
+/* Every leg of every ball passes clear of the others: of balls of the chain that still lie there by a diameter, of all
+ * more by the clearance. Where the cue ball lies does not count: it has left by then. */
+static void check_ways(const struct stage *s, const struct node *node)
+{
+	static struct images images;
+	struct goal goal[PLAN_CHAIN_MAX];
+	double diameter = 2 * s->table.ball_radius;
+	uint32_t before = 0;
+	ck_assert(candidate_goals(&s->scene, node, goal));
+	for (int i = 0; i < node->chain_count; i++) {
+		struct way way;
+		int ball = node->chain[i];
+		images_init(&images, &s->mirrors, goal[i].point, (vec2){1, 0}, s->scene.rails);
+		ck_assert(way_build(&way, &s->mirrors, &images, node->sequence[i], s->ball[ball].pos));
+		ck_assert_int_eq(way.rails, goal[i].rails);
+		for (int b = 0; b < s->scene.count; b++)
+			for (int leg = 0; leg <= way.rails && b != ball && b != s->scene.cue; leg++) {
+				bool struck = i > 0 && b == node->chain[i - 1] && leg == way.rails;
+				double least = before >> b & 1 ? diameter : diameter + s->profile.clearance;
+				double d2 = segment_distance2(way.point[leg], way.point[leg + 1], s->ball[b].pos);
+				ck_assert(struck || sqrt(d2) >= least - 1e-9);
+			}
+		before |= 1u << ball;
+	}
+}
+
 static void descend(struct stage *s, const struct node *node, int *nodes)
 {
 	bool overflow = false;
@@ -132,6 +158,8 @@ static void descend(struct stage *s, const struct node *node, int *nodes)
 	int count = candidate_expand(&s->scene, node, child, 256, &overflow);
 	for (int i = 0; i < count; i++) {
 		check_chain(s, node, &child[i]);
+		if (child[i].complete)
+			check_ways(s, &child[i]);
 		++*nodes;
 		descend(s, &child[i], nodes);
 	}
@@ -198,6 +226,63 @@ START_TEST(blocked_ways)
 }
 END_TEST
 
+/* Where the cue ball lies it is not in anybody's way: it has left before another ball comes there. */
+START_TEST(the_cue_balls_place_is_free)
+{
+	struct stage *s = stage_new();
+	bool overflow = false;
+	set(s, 3, 0, 2);
+	s->ball[0] = ball_at(COLOUR_WHITE, (vec2){0, 0.36});
+	s->ball[1] = ball_at(COLOUR_RED, (vec2){0, 0.1});
+	s->ball[2] = ball_at(COLOUR_RED, (vec2){0.3, -0.2});
+	struct node root = candidate_root(&s->scene, table_pocket(&s->table, "TOP-CENTER"), 0);
+	int count = candidate_expand(&s->scene, &root, s->child, CHILDREN, &overflow);
+	bool way_over_it = false;
+	for (int i = 0; i < count; i++)
+		way_over_it |= s->child[i].chain[0] == 1;
+	ck_assert(way_over_it);
+	/* nor does the cue need room from the ball that it strikes */
+	ck_assert(cue_has_room(&s->table, &s->profile, &(struct obstacles){s->ball, 3, ~1u}, s->ball[0].pos,
+			       (vec2){0, 1}));
+}
+END_TEST
+
+/* Only a ball that is on is struck first; with a named one nothing comes between. */
+START_TEST(who_may_be_struck_first)
+{
+	struct stage *s = stage_new();
+	bool overflow = false;
+	for (int named = 0; named < 2; named++) {
+		set(s, 4, 0, 2);
+		s->ball[0] = ball_at(COLOUR_WHITE, (vec2){0, -0.3});
+		s->ball[1] = ball_at(COLOUR_RED, (vec2){0, 0.25});
+		s->ball[2] = ball_at(COLOUR_BLUE, (vec2){0.12, 0}); /* beside the way from the white to the red */
+		s->ball[3] = ball_at(COLOUR_BLACK, (vec2){-0.4, 0.2});
+		s->scene.on = 1u << 2;
+		s->scene.wanted = 1u << 1;
+		s->scene.named = named;
+		struct node root = candidate_root(&s->scene, table_pocket(&s->table, "TOP-CENTER"), 0);
+		ck_assert_int_eq(candidate_expand(&s->scene, &root, s->child, CHILDREN, &overflow), 1);
+		ck_assert_int_eq(s->child[0].chain[0], 1);
+		int count = candidate_expand(&s->scene, &s->child[0], s->next, CHILDREN, &overflow);
+		ck_assert_int_eq(count > 0, !named); /* the red is not on: not by the cue ball */
+		bool over_blue = false;
+		for (int i = 0; i < count; i++) {
+			ck_assert_int_ne(s->next[i].chain[1], 0);
+			over_blue |= s->next[i].chain[1] == 2;
+		}
+		ck_assert_int_eq(over_blue, !named);
+		/* over the blue, which is on, it is */
+		for (int i = 0; i < count; i++) {
+			struct node end[64];
+			int ends = candidate_expand(&s->scene, &s->next[i], end, 64, &overflow);
+			ck_assert_int_eq(ends, s->next[i].chain[1] == 2);
+			ck_assert(ends == 0 || (end[0].complete && end[0].chain_count == 3));
+		}
+	}
+}
+END_TEST
+
 START_TEST(full_buffer_is_told)
 {
 	struct random random = random_begin("full_buffer_is_told");
@@ -225,6 +310,8 @@ Suite *test_suite(void)
 	tcase_add_test(tc, chains_hold_their_limits);
 	tcase_add_test(tc, cut_of_exactly_the_limit);
 	tcase_add_test(tc, blocked_ways);
+	tcase_add_test(tc, the_cue_balls_place_is_free);
+	tcase_add_test(tc, who_may_be_struck_first);
 	tcase_add_test(tc, full_buffer_is_told);
 	suite_add_tcase(suite, tc);
 	return suite;

@@ -139,14 +139,14 @@ START_TEST(room_for_the_cue)
 	struct cost_profile profile = cost_profile_thesis();
 	double least = profile.cue_clearance + table.ball_radius;
 	struct ball ball[2] = {ball_at(COLOUR_WHITE, (vec2){0, 0}), ball_at(COLOUR_RED, (vec2){-0.03, least + 1e-6})};
-	ck_assert(cue_has_room(&table, &profile, ball, 2, 2, ball[0].pos, (vec2){1, 0}));
+	ck_assert(cue_has_room(&table, &profile, &(struct obstacles){ball, 2, 2}, ball[0].pos, (vec2){1, 0}));
 	ball[1].pos.y = least - 1e-6;
-	ck_assert(!cue_has_room(&table, &profile, ball, 2, 2, ball[0].pos, (vec2){1, 0}));
+	ck_assert(!cue_has_room(&table, &profile, &(struct obstacles){ball, 2, 2}, ball[0].pos, (vec2){1, 0}));
 	ball[1].pos = (vec2){-profile.cue_room - least - 1e-6, 0};
-	ck_assert(cue_has_room(&table, &profile, ball, 2, 2, ball[0].pos, (vec2){1, 0}));
+	ck_assert(cue_has_room(&table, &profile, &(struct obstacles){ball, 2, 2}, ball[0].pos, (vec2){1, 0}));
 	ball[1].phase = BALL_POTTED;
 	ball[1].pos = (vec2){-0.03, 0};
-	ck_assert(cue_has_room(&table, &profile, ball, 2, 2, ball[0].pos, (vec2){1, 0}));
+	ck_assert(cue_has_room(&table, &profile, &(struct obstacles){ball, 2, 2}, ball[0].pos, (vec2){1, 0}));
 }
 END_TEST
 

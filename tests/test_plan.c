@@ -337,6 +337,45 @@ START_TEST(budget_in_seconds)
 }
 END_TEST
 
+/* A live budget is not searched away: time is kept to find the success of what is proposed, more of it when that decides
+ * the order, and the whole still ends in time. */
+START_TEST(time_is_kept_for_ranking)
+{
+	struct table table = scene_thesis_table();
+	struct ball ball[BALL_MAX];
+	scene_after_break(&table, 3, ball);
+	struct plan_request request = scene_request(ball, BALL_MAX);
+	request.target = TARGET_ANY;
+	request.rails = 3;
+	request.depth = 4;
+	request.speeds = 5;
+	request.plans = 200;
+	request.tolerances = 1;
+	request.budget.seconds = _i ? 2 : 8; /* of a clock that goes on a millisecond whenever it is asked */
+	double time = 0;
+	char err[100];
+	struct planner *planner;
+	struct planner_def def = planner_def_default();
+	def.table = &table;
+	def.profile.rank_by_success = _i;
+	def.profile.pocket_speed = 0.2;
+	def.now = clock_steps;
+	def.now_context = &time;
+	ck_assert_int_eq(planner_create(&planner, &def), 0);
+	struct plan_result result;
+	ck_assert_int_eq(planner_run(planner, &request, NULL, NULL, &result, err, sizeof err), 0);
+	ck_assert(!result.exhausted);
+	int known = 0;
+	for (int i = 0; i < result.plan_count; i++)
+		for (int s = 0; s < result.plan[i].shot_count; s++)
+			known += !isnan(result.plan[i].shot[s].success);
+	ck_assert_int_ge(known, _i ? 5 : result.plan[0].shot_count);
+	ck_assert(!isnan(result.plan[0].shot[0].success));
+	ck_assert(time <= request.budget.seconds + 0.2);
+	planner_destroy(planner);
+}
+END_TEST
+
 /* No memory is taken by a search, and a planner stays within what it was given. */
 START_TEST(memory_is_fixed)
 {
@@ -447,6 +486,7 @@ Suite *test_suite(void)
 	tcase_add_loop_test(tc, cancelled_from_another_thread, 1, 3);
 	tcase_add_loop_test(tc, cancelled_before_it_runs, 0, SCHEME_COUNT);
 	tcase_add_test(tc, budget_in_seconds);
+	tcase_add_loop_test(tc, time_is_kept_for_ranking, 0, 2);
 	tcase_add_test(tc, memory_is_fixed);
 	tcase_add_test(tc, little_memory);
 	tcase_add_test(tc, bad_definitions);

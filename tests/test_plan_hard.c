@@ -307,6 +307,105 @@ START_TEST(straight_pots_are_proposed)
 }
 END_TEST
 
+/* A ball that nothing can reach: red in a ring of others. */
+static void wall_in(struct hard *hard, vec2 at)
+{
+	add(hard, COLOUR_RED, at.x, at.y);
+	for (int i = 0; i < 7; i++) {
+		vec2 out = vec2_madd(at, 0.062, vec2_from_angle(2 * M_PI * i / 7));
+		add(hard, i < 6 ? (enum ball_colour)(COLOUR_YELLOW + i) : COLOUR_UNKNOWN, out.x, out.y);
+	}
+}
+
+/* Where only fouls are left, the first that is tried (along +x) would pot the cue ball: another one as cheap does not. */
+START_TEST(no_foul_that_pots_the_cue_ball)
+{
+	static struct sim sim;
+	struct hard h;
+	begin(&h, true);
+	add(&h, COLOUR_WHITE, 0.7, 0.4415);
+	wall_in(&h, (vec2){-0.4, -0.2});
+	struct model model;
+	ck_assert(model_from_name("thesis", &model));
+	sim_init(&sim, &h.table, &model, h.ball, h.count);
+	sim_strike(&sim, 0, &(struct shot){.speed = 2.5});
+	sim_run(&sim, &(struct sim_limits){.max_time = INFINITY, .max_events = 1000}, NULL);
+	ck_assert_int_eq(sim_ball(&sim, 0).phase, BALL_POTTED);
+	set_rules(&h);
+	search_with(&h, "thesis");
+	ck_assert_int_eq(best(&h)->target, -1);
+	ck_assert_int_eq(best(&h)->foul, 4);
+	for (int i = 0; i < best(&h)->potted_count; i++)
+		ck_assert_int_ne(best(&h)->potted[i].ball, 0);
+	end(&h);
+}
+END_TEST
+
+/* The contact that is proposed where there is no pot: legal where one is, names the ball that it strikes, arrives. */
+START_TEST(contacts_are_legal)
+{
+	struct random random = random_begin("contacts_are_legal");
+	int contacts = 0;
+	for (int n = 0; n < 150; n++) {
+		struct hard h;
+		begin(&h, n & 1);
+		h.count = 3 + n % 4;
+		scene_random(&random, &h.table, 0.01, h.ball, h.count);
+		set_rules(&h);
+		h.request.budget.nodes = 1; /* no time for pots */
+		search_with(&h, n % 3 ? "thesis" : "real");
+		const struct plan_shot *shot = best(&h);
+		if (shot->target < 0) {
+			contacts++;
+			ck_assert_int_eq(shot->foul, 0);
+			ck_assert_int_eq(shot->chain[0], 0);
+			ck_assert_int_eq(h.ball[shot->chain[1]].colour, COLOUR_RED);
+			ck_assert(shot->chain[2] == -1 && shot->chain_count == 2 && shot->pocket == -1);
+			ck_assert(isnan(shot->success));
+			ck_assert(shot->shot.speed >= 0.3 && shot->shot.speed <= 5);
+		}
+		ck_assert(h.result.plan_count == 1 || shot->target >= 0);
+		end(&h);
+	}
+	ck_assert_int_gt(contacts, 100);
+}
+END_TEST
+
+/* A colour or a ball that is asked for is the one that falls, and by the rules the one that is struck. */
+START_TEST(what_is_asked_for_is_played)
+{
+	struct random random = random_begin("what_is_asked_for_is_played");
+	int played = 0;
+	for (int n = 0; n < 120; n++) {
+		struct hard h;
+		begin(&h, n & 1);
+		h.count = 8 + n % 3; /* all six colours, and one red or more */
+		scene_random(&random, &h.table, 0.02, h.ball, h.count);
+		if (n % 4 == 3)
+			for (int i = 1; i < h.count - 6; i++)
+				h.ball[i].phase = BALL_POTTED; /* no red left: any colour after the last one */
+		set_rules(&h);
+		int wanted = h.count - 1 - n % 6;
+		h.request.target = n % 12 < 6 ? TARGET_COLOUR : TARGET_BALL;
+		h.request.target_colour = h.ball[wanted].colour;
+		h.request.target_ball = wanted;
+		search_with(&h, "thesis");
+		for (int i = 0; i < h.result.plan_count; i++) {
+			const struct plan_shot *shot = &h.result.plan[i].shot[0];
+			if (shot->target < 0)
+				continue;
+			played++;
+			ck_assert_int_eq(shot->target, wanted);
+			ck_assert_int_eq(shot->chain[1], wanted);
+			ck_assert_int_eq(shot->foul, 0);
+			ck_assert_int_eq(shot->points, (int)h.ball[wanted].colour);
+		}
+		end(&h);
+	}
+	ck_assert_int_gt(played, 50);
+}
+END_TEST
+
 START_TEST(pocket_blocked_by_another_ball)
 {
 	struct hard h;
@@ -605,6 +704,9 @@ Suite *test_suite(void)
 	tcase_add_test(tc, no_legal_shot);
 	tcase_add_loop_test(tc, all_in_one_line, 0, 10);
 	tcase_add_test(tc, straight_pots_are_proposed);
+	tcase_add_test(tc, no_foul_that_pots_the_cue_ball);
+	tcase_add_test(tc, contacts_are_legal);
+	tcase_add_test(tc, what_is_asked_for_is_played);
 	tcase_add_test(tc, pocket_blocked_by_another_ball);
 	tcase_add_loop_test(tc, target_in_the_jaws, 0, 2);
 	tcase_add_test(tc, ball_at_rest_between_the_jaws);

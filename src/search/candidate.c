@@ -122,29 +122,34 @@ static bool way_is_free(const struct scene *scene, const struct node *node, cons
 		chain |= 1u << node->chain[i];
 	if (node->chain_count > 0)
 		struck = 1u << node->chain[node->chain_count - 1];
-	uint32_t others = ~(chain | 1u << ball | 1u << scene->cue);
+	struct obstacles others = {scene->ball, scene->count, ~(chain | 1u << ball | 1u << scene->cue)};
+	struct obstacles tight = {scene->ball, scene->count, chain};
 	for (int i = 0; i <= way->rails; i++) {
-		uint32_t tight = i == way->rails ? chain & ~struck : chain;
-		if (!segment_is_free(scene->ball, scene->count, others, way->point[i], way->point[i + 1],
-				     diameter + scene->profile->clearance))
-			return false;
-		if (tight &&
-		    !segment_is_free(scene->ball, scene->count, tight, way->point[i], way->point[i + 1], diameter))
+		if (i == way->rails)
+			tight.mask &= ~struck;
+		if (!segment_is_free(&others, way->point[i], way->point[i + 1], diameter + scene->profile->clearance) ||
+		    !segment_is_free(&tight, way->point[i], way->point[i + 1], diameter))
 			return false;
 	}
 	return true;
 }
 
-/* The chain with ball in front of it, whose way and start speed are known. */
-static void extend(const struct scene *scene, const struct node *node, const struct way *way, int ball, int sequence,
-		   double cos_target, double speed, struct node *child)
+/* A ball that comes in front of a chain: its way there, and the speed that it needs. */
+struct link {
+	int ball, sequence;
+	double cos_target, speed;
+	struct way way;
+};
+
+static void extend(const struct scene *scene, const struct node *node, const struct link *link, struct node *child)
 {
-	bool is_cue = ball == scene->cue;
+	const struct way *way = &link->way;
+	bool is_cue = link->ball == scene->cue;
 	vec2 direction = vec2_scale(vec2_sub(way->point[1], way->point[0]), 1 / way->leg[0]);
 	struct cost_way terms = {
 		.way2 = way_length2(way),
 		.carry = is_cue ? node->carry : 1,
-		.angles = way_angles(way, cos_target),
+		.angles = way_angles(way, link->cos_target),
 		.rails = way->rails,
 		.strikes = !is_cue,
 	};
@@ -153,12 +158,12 @@ static void extend(const struct scene *scene, const struct node *node, const str
 	child->search_cost += step;
 	child->cost += step;
 	child->carry = cost_distance(scene->table, way->leg[0] * way->leg[0]);
-	child->speed = speed;
-	child->to = vec2_madd(scene->ball[ball].pos, -2 * scene->table->ball_radius, direction);
+	child->speed = link->speed;
+	child->to = vec2_madd(scene->ball[link->ball].pos, -2 * scene->table->ball_radius, direction);
 	child->after = direction;
 	child->angle = atan2(direction.y, direction.x);
-	child->sequence[child->chain_count] = (uint16_t)sequence;
-	child->chain[child->chain_count++] = (int8_t)ball;
+	child->sequence[child->chain_count] = (uint16_t)link->sequence;
+	child->chain[child->chain_count++] = (int8_t)link->ball;
 	child->rails = (uint8_t)(child->rails + way->rails);
 	child->complete = is_cue;
 }
@@ -207,19 +212,18 @@ static bool try_way(const struct expansion *x, int ball, int sequence, struct no
 	double along = vec2_dot(d, x->images.direction[sequence]), length2 = vec2_norm2(d);
 	if (along <= 0 || along * along <= x->cos2 * length2)
 		return false;
-	double cos_target = along / sqrt(length2);
-	double speed = node->chain_count == 0 ? node->speed : hit_backward(scene->table, node->speed, cos_target);
-	struct way way;
-	if (speed * x->least_gain[scene->mirrors->sequence[sequence].length] > most ||
-	    !way_build(&way, scene->mirrors, &x->images, sequence, start))
+	struct link link = {.ball = ball, .sequence = sequence, .cos_target = along / sqrt(length2)};
+	double arrival =
+		node->chain_count == 0 ? node->speed : hit_backward(scene->table, node->speed, link.cos_target);
+	if (arrival * x->least_gain[scene->mirrors->sequence[sequence].length] > most ||
+	    !way_build(&link.way, scene->mirrors, &x->images, sequence, start))
 		return false;
-	speed = start_speed(x, &way, speed);
-	if (speed > most || !way_is_free(scene, node, &way, ball))
+	link.speed = start_speed(x, &link.way, arrival);
+	if (link.speed > most || !way_is_free(scene, node, &link.way, ball))
 		return false;
-	extend(scene, node, &way, ball, sequence, cos_target, speed, child);
-	uint32_t all = ~(1u << scene->cue);
-	return !child->complete ||
-	       cue_has_room(scene->table, scene->profile, scene->ball, scene->count, all, start, child->after);
+	extend(scene, node, &link, child);
+	const struct obstacles all = {scene->ball, scene->count, ~(1u << scene->cue)};
+	return !child->complete || cue_has_room(scene->table, scene->profile, &all, start, child->after);
 }
 
 /* Which balls may come in front of the chain. */

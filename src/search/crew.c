@@ -101,7 +101,8 @@ bool crew_wait(struct crew *crew, struct worker *worker, bool (*any)(const struc
 		} else {
 			double since = budget_now(&crew->planner->budget);
 			pthread_cond_wait(&crew->work, &crew->lock);
-			atomic_store(&worker->waited, atomic_load(&worker->waited) + budget_now(&crew->planner->budget) - since);
+			atomic_store(&worker->waited,
+				     atomic_load(&worker->waited) + budget_now(&crew->planner->budget) - since);
 		}
 	}
 	atomic_fetch_sub(&crew->dry, 1);
@@ -188,8 +189,7 @@ static void take_in(struct crew *crew, struct worker *worker, const struct slot 
 	struct finding finding = finding_make(&crew->planner->task, (int32_t)slot->node.state, played);
 	worker->found_shots[worker->found_count] = (uint8_t)finding.shots;
 	worker->found[worker->found_count++] = finding.solution;
-	if (finding.leads_on &&
-	    finding.solution.cost <= atomic_load_explicit(&crew->limit, memory_order_relaxed))
+	if (finding.leads_on && finding.solution.cost <= atomic_load_explicit(&crew->limit, memory_order_relaxed))
 		open_state(crew, worker, &finding.solution, &played->outcome);
 }
 

@@ -137,18 +137,21 @@ double segment_distance2(vec2 a, vec2 b, vec2 p)
 	return across * across / length2;
 }
 
-bool segment_is_free(const struct ball *ball, int count, uint32_t mask, vec2 a, vec2 b, double distance)
+bool segment_is_free(const struct obstacles *obstacles, vec2 a, vec2 b, double distance)
 {
 	double least = distance * distance;
-	for (int i = 0; i < count; i++)
-		if ((mask >> i & 1) && ball[i].phase != BALL_POTTED && segment_distance2(a, b, ball[i].pos) < least)
+	for (int i = 0; i < obstacles->count; i++) {
+		const struct ball *ball = &obstacles->ball[i];
+		if ((obstacles->mask >> i & 1) && ball->phase != BALL_POTTED &&
+		    segment_distance2(a, b, ball->pos) < least)
 			return false;
+	}
 	return true;
 }
 
-bool cue_has_room(const struct table *table, const struct cost_profile *profile, const struct ball *ball, int count,
-		  uint32_t mask, vec2 cue, vec2 direction)
+bool cue_has_room(const struct table *table, const struct cost_profile *profile, const struct obstacles *obstacles,
+		  vec2 cue, vec2 direction)
 {
 	vec2 back = vec2_madd(cue, -profile->cue_room, direction);
-	return segment_is_free(ball, count, mask, cue, back, profile->cue_clearance + table->ball_radius);
+	return segment_is_free(obstacles, cue, back, profile->cue_clearance + table->ball_radius);
 }

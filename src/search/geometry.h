@@ -55,11 +55,18 @@ bool way_build(struct way *way, const struct mirrors *mirrors, const struct imag
 /* Squared distance of p from the segment a b. */
 double segment_distance2(vec2 a, vec2 b, vec2 p);
 
-/* Nothing within distance of the segment a b: no ball on the table whose bit is set in mask. */
-bool segment_is_free(const struct ball *ball, int count, uint32_t mask, vec2 a, vec2 b, double distance);
+/* Balls that may be in the way: those on the table whose bit is set. Borrowed. */
+struct obstacles {
+	const struct ball *ball;
+	int count;
+	uint32_t mask;
+};
 
-/* 4.19: room behind the cue ball at cue for a shot in that (unit) direction; balls of mask are looked at. */
-bool cue_has_room(const struct table *table, const struct cost_profile *profile, const struct ball *ball, int count,
-		  uint32_t mask, vec2 cue, vec2 direction);
+/* None of them within distance of the segment a b. */
+bool segment_is_free(const struct obstacles *obstacles, vec2 a, vec2 b, double distance);
+
+/* 4.19: room behind the cue ball at cue for a shot in that (unit) direction. */
+bool cue_has_room(const struct table *table, const struct cost_profile *profile, const struct obstacles *obstacles,
+		  vec2 cue, vec2 direction);
 
 #endif

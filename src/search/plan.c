@@ -37,8 +37,8 @@ struct planner_def planner_def_default(void)
 static size_t fixed_memory(void)
 {
 	return sizeof(struct planner) + (PLAN_WORKERS_MAX + 1) * sizeof(struct workspace) +
-	       BATCH * sizeof(struct slot) + STATES_MAX * sizeof(struct state) +
-	       sizeof(struct results) + PLAN_MAX * sizeof(struct plan);
+	       BATCH * sizeof(struct slot) + STATES_MAX * sizeof(struct state) + sizeof(struct results) +
+	       PLAN_MAX * sizeof(struct plan);
 }
 
 static int take_memory(struct planner *planner)
@@ -94,8 +94,7 @@ int planner_create(struct planner **out, const struct planner_def *def)
 	planner->def = *def;
 	planner->budget = (struct budget){.now = def->now, .now_context = def->now_context};
 	mirrors_init(&planner->mirrors, def->table);
-	planner->task = (struct task){
-		.def = &planner->def, .mirrors = &planner->mirrors, .budget = &planner->budget};
+	planner->task = (struct task){.def = &planner->def, .mirrors = &planner->mirrors, .budget = &planner->budget};
 	int rc = take_memory(planner);
 	if (rc != 0) {
 		planner_destroy(planner);
@@ -145,8 +144,7 @@ static bool run_batches(struct planner *planner, int limit, plan_progress_fn *pr
 
 static void search(struct planner *planner, plan_progress_fn *progress, void *context, struct plan_result *result)
 {
-	double budget = planner->task.request->budget.seconds,
-	       begin = budget > 0 ? budget_now(&planner->budget) : 0;
+	double budget = planner->task.request->budget.seconds, begin = budget > 0 ? budget_now(&planner->budget) : 0;
 	double share = 1;
 	if (planner->def.profile.rank_by_success)
 		share -= RANKING_SHARE;

@@ -41,7 +41,8 @@ static void do_job(void *context, int item, int worker)
 static double chance(const struct planner *planner, const struct solution *solution)
 {
 	double product = isnan(solution->last.success) ? 0 : solution->last.success;
-	for (int32_t at = solution->state; planner->task.state[at].parent != NO_STATE; at = planner->task.state[at].parent)
+	for (int32_t at = solution->state; planner->task.state[at].parent != NO_STATE;
+	     at = planner->task.state[at].parent)
 		product *= isnan(planner->task.state[at].record.success) ? 0 : planner->task.state[at].record.success;
 	return product;
 }
@@ -63,8 +64,8 @@ void rank_solutions(struct planner *planner)
 {
 	struct solutions *list = results_best(planner->results);
 	bool by_success = planner->def.profile.rank_by_success;
-	int wanted =
-		by_success && planner->task.request->tolerances < RANKED_MAX ? RANKED_MAX : planner->task.request->tolerances;
+	int wanted = by_success && planner->task.request->tolerances < RANKED_MAX ? RANKED_MAX
+										  : planner->task.request->tolerances;
 	struct ranking ranking = {.planner = planner, .count = 0};
 	if (!list)
 		return;
@@ -72,7 +73,8 @@ void rank_solutions(struct planner *planner)
 	for (int i = 0; i < count; i++) {
 		struct solution *s = solutions_at(list, i);
 		add_job(&ranking, &s->last, s->state);
-		for (int32_t at = s->state; planner->task.state[at].parent != NO_STATE; at = planner->task.state[at].parent)
+		for (int32_t at = s->state; planner->task.state[at].parent != NO_STATE;
+		     at = planner->task.state[at].parent)
 			add_job(&ranking, &planner->task.state[at].record, planner->task.state[at].parent);
 	}
 	pool_for(planner->pool, ranking.count, do_job, &ranking);

@@ -18,7 +18,7 @@ struct aim {
 
 struct aims {
 	struct aim aim[AIM_MAX]; /* best first */
-	int count;
+	int count, rails;	 /* cushions that an aim may have */
 };
 
 static void add_aim(struct aims *aims, const struct aim *aim)
@@ -46,14 +46,15 @@ static double speed_for(const struct scene *scene, const struct way *way)
 }
 
 /* The cue ball to ball over a sequence, aimed beside its middle by off radii. */
-static void aim_at(const struct scene *scene, int state, int ball, double off, int rails, struct aims *aims)
+static void aim_at(struct aims *aims, const struct scene *scene, int state, int ball, double off)
 {
 	vec2 cue = scene->ball[scene->cue].pos, target = scene->ball[ball].pos;
 	double diameter = 2 * scene->table->ball_radius;
-	uint32_t others = ~(1u << ball | 1u << scene->cue);
+	const struct obstacles others = {scene->ball, scene->count, ~(1u << ball | 1u << scene->cue)};
+	const struct obstacles all = {scene->ball, scene->count, ~(1u << scene->cue)};
 	vec2 side = vec2_scale(vec2_perp(vec2_unit(vec2_sub(target, cue))), off * scene->table->ball_radius);
 	struct images images;
-	images_init(&images, scene->mirrors, vec2_add(target, side), (vec2){1, 0}, rails);
+	images_init(&images, scene->mirrors, vec2_add(target, side), (vec2){1, 0}, aims->rails);
 	for (int s = 0; s < images.count; s++) {
 		struct way way;
 		if (!images.valid[s] || !way_build(&way, scene->mirrors, &images, s, cue))
@@ -61,8 +62,7 @@ static void aim_at(const struct scene *scene, int state, int ball, double off, i
 		bool is_free = true;
 		double way2 = 0;
 		for (int i = 0; i <= way.rails && is_free; i++) {
-			is_free = segment_is_free(scene->ball, scene->count, others, way.point[i], way.point[i + 1],
-						  diameter);
+			is_free = segment_is_free(&others, way.point[i], way.point[i + 1], diameter);
 			way2 += way.leg[i] * way.leg[i];
 		}
 		vec2 direction = vec2_unit(vec2_sub(way.point[1], way.point[0]));
@@ -75,8 +75,7 @@ static void aim_at(const struct scene *scene, int state, int ball, double off, i
 			.state = (uint16_t)state,
 		};
 		/* A cue over another ball is awkward, not impossible. */
-		if (!cue_has_room(scene->table, scene->profile, scene->ball, scene->count, ~(1u << scene->cue), cue,
-				  direction))
+		if (!cue_has_room(scene->table, scene->profile, &all, cue, direction))
 			aim.cost += 1;
 		if (is_free)
 			add_aim(aims, &aim);
@@ -136,13 +135,13 @@ static bool fan_find(struct planner *planner)
 bool safety_find(struct planner *planner, bool thorough)
 {
 	static const double off[AIMS] = {0, 0.7, -0.7, 1.6, -1.6};
-	struct aims aims = {.count = 0};
 	int rails = planner->task.request->rails > SAFETY_RAILS ? planner->task.request->rails : SAFETY_RAILS;
+	struct aims aims = {.rails = thorough ? rails : 0};
 	for (int i = 0; i < planner->state_count && planner->task.state[i].parent == NO_STATE; i++) {
 		const struct scene *scene = &planner->task.state[i].scene;
 		for (int b = 0; b < scene->count; b++)
 			for (int a = 0; a < (thorough ? AIMS : 1) && (scene->on >> b & 1); a++)
-				aim_at(scene, i, b, off[a], thorough ? rails : 0, &aims);
+				aim_at(&aims, scene, i, b, off[a]);
 	}
 	for (int i = 0; i < aims.count && (i == 0 || !budget_is_over(&planner->budget)); i++) {
 		struct record record;

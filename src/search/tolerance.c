@@ -65,8 +65,7 @@ static double within(double below, double above, double sigma)
 void tolerance_find(const struct task *task, const struct state *state, struct record *record, struct workspace *work)
 {
 	const struct cost_profile *profile = &task->def->profile;
-	struct trial trial = {
-		.task = task, .state = state, .work = work, .record = *record, .exact = record->shot};
+	struct trial trial = {.task = task, .state = state, .work = work, .record = *record, .exact = record->shot};
 	if (record->target < 0)
 		return;
 	double left = reach(&trial, 1, 0.0005, 0.1), right = reach(&trial, -1, 0.0005, 0.1);
