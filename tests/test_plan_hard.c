@@ -371,6 +371,30 @@ START_TEST(contacts_are_legal)
 }
 END_TEST
 
+/* The simplest contact with the red would send a colour down: another one is found that does not. */
+START_TEST(no_contact_that_pots_a_colour)
+{
+	static struct sim sim;
+	struct hard h;
+	struct model model;
+	begin(&h, true);
+	add(&h, COLOUR_WHITE, 0, 0);
+	add(&h, COLOUR_RED, 0, 0.3);
+	int black = add(&h, COLOUR_BLACK, 0, 0.43);
+	ck_assert(model_from_name("thesis", &model));
+	sim_init(&sim, &h.table, &model, h.ball, h.count);
+	sim_strike(&sim, 0, &(struct shot){.angle = M_PI / 2, .speed = 0.6});
+	sim_run(&sim, &(struct sim_limits){.max_time = INFINITY, .max_events = 1000}, NULL);
+	ck_assert_int_eq(sim_ball(&sim, black).phase, BALL_POTTED);
+	set_rules(&h);
+	h.request.budget.nodes = 1;
+	search_with(&h, "thesis");
+	ck_assert_int_eq(best(&h)->target, -1);
+	ck_assert_int_eq(best(&h)->foul, 0);
+	end(&h);
+}
+END_TEST
+
 /* A colour or a ball that is asked for is the one that falls, and by the rules the one that is struck. */
 START_TEST(what_is_asked_for_is_played)
 {
@@ -705,6 +729,7 @@ Suite *test_suite(void)
 	tcase_add_loop_test(tc, all_in_one_line, 0, 10);
 	tcase_add_test(tc, straight_pots_are_proposed);
 	tcase_add_test(tc, no_foul_that_pots_the_cue_ball);
+	tcase_add_test(tc, no_contact_that_pots_a_colour);
 	tcase_add_test(tc, contacts_are_legal);
 	tcase_add_test(tc, what_is_asked_for_is_played);
 	tcase_add_test(tc, pocket_blocked_by_another_ball);
