@@ -108,6 +108,42 @@ START_TEST(costs_are_in_order)
 }
 END_TEST
 
+/* A chain is played at its least speed and at steps above it, up to the player's largest and no further. */
+START_TEST(start_speeds_are_steps)
+{
+	struct table table = scene_thesis_table();
+	struct cost_profile profile = cost_profile_thesis();
+	struct ball ball[2] = {ball_at(COLOUR_WHITE, (vec2){0, -0.2}), ball_at(COLOUR_RED, (vec2){0, 0.2})};
+	profile.speed_step = 0.25;
+	profile.max_speed = 2.1;
+	profile.aims = 1;
+	int pocket = table_pocket(&table, "TOP-CENTER");
+	for (int speeds = 1; speeds <= 12; speeds++) {
+		struct plan_request request = scene_request(ball, 2);
+		request.speeds = speeds;
+		struct planner *planner = scene_planner(&table, "thesis", &profile, 1);
+		struct plan_result result = scene_run(planner, &request);
+		double least = INFINITY, most = 0;
+		int played = 0;
+		for (int i = 0; i < result.plan_count; i++) {
+			const struct plan_shot *shot = &result.plan[i].shot[0];
+			if (shot->pocket != pocket || shot->chain_count != 2)
+				continue;
+			least = fmin(least, shot->shot.speed);
+			most = fmax(most, shot->shot.speed);
+			played++;
+		}
+		int possible = 1 + (int)((profile.max_speed - least) / profile.speed_step);
+		ck_assert_int_gt(possible, 3);
+		ck_assert_int_lt(possible, 12);
+		ck_assert_int_eq(played, speeds < possible ? speeds : possible);
+		ck_assert_double_eq_tol(most, least + (played - 1) * profile.speed_step, 1e-12);
+		ck_assert(most <= profile.max_speed);
+		planner_destroy(planner);
+	}
+}
+END_TEST
+
 /* The same list, bit for bit, at 1, 2 and 8 workers, exhausted and cut short by nodes, with tolerances. */
 START_TEST(workers_do_not_matter)
 {
@@ -480,6 +516,7 @@ Suite *test_suite(void)
 	tcase_set_timeout(tc, 120);
 	tcase_add_loop_test(tc, proposals_come_true, 0, 4);
 	tcase_add_test(tc, costs_are_in_order);
+	tcase_add_test(tc, start_speeds_are_steps);
 	tcase_add_test(tc, workers_do_not_matter);
 	tcase_add_test(tc, anytime);
 	tcase_add_test(tc, progress_tells_improvements);
