@@ -40,7 +40,7 @@ APP := $(addprefix process/,$(APP_PROCESS)) $(addprefix config/,$(APP_CONFIG)) $
 # programs: src/app/programs/main_NAME.c becomes build/NAME
 PROGRAMS := billiard billiard-vision billiard-planner billiard-infinity billiard-projector billiard-table
 # tests/test_NAME.c each; tests/NAME.c shared by them
-TESTS := signature message_check fsm stability plan_message controller planner_service planner_bus bus process supervisor frame_source services loop replay \
+TESTS := signature message_check animation fsm stability plan_message controller planner_service planner_bus bus process supervisor frame_source services loop replay \
 	config position save cmd plot draw render player table_camera contact_real contact_recorded shot_file \
 	rules cost geometry frontier pool scheme candidate plan plan_thesis plan_hard plan_complete tolerance refine solutions request \
 	ball bed contact predict event inverse model motion queue roots sim sim_hard table trace \
@@ -55,7 +55,7 @@ BENCHES := physics accuracy planner planner_bus search vision
 EVALS := physics search vision planner
 BENCH_SHARED := report plain_sim plain_sim_long vision_eval vision_eval_photos vision_eval_videos vision_eval_rendered hough_cv
 # fuzz/fuzz_NAME.c each, seeds in fuzz/corpus/NAME
-FUZZERS := position config shot_file colours image bus search
+FUZZERS := position config shot_file colours image bus search controller
 FUZZ_SECONDS ?= 20
 LCM_TYPES := animation_t ball_t command_t draw_list_t draw_item_t image_t keyframe_t plan_t plan_entry_t plan_shot_t \
 	plan_request_t status_t metric_t table_state_t

@@ -297,6 +297,96 @@ START_TEST(closing_with_messages_waiting_frees_them)
 }
 END_TEST
 
+/* A type that counts what it holds: each message decoded is freed once, also one that a newer replaces before it was delivered. */
+static int held;
+
+static int counting_decode(const void *bytes, int offset, int max, void *message)
+{
+	int r = bus_table_state.decode(bytes, offset, max, message);
+	held += r >= 0;
+	return r;
+}
+
+static int counting_cleanup(void *message)
+{
+	held--;
+	return bus_table_state.cleanup(message);
+}
+
+START_TEST(every_message_decoded_is_freed_once)
+{
+	struct bus_type counting = bus_table_state;
+	uint8_t *bytes;
+	int size = empty_message(&bus_table_state, &bytes);
+	uint8_t *longer = calloc(1, (size_t)size + 1);
+	memcpy(longer, bytes, (size_t)size);
+	counting.decode = counting_decode;
+	counting.cleanup = counting_cleanup;
+	held = 0;
+	struct bus_subscription s = {"STATE", &counting, BUS_LATEST, on_state, &handled};
+	ck_assert_int_eq(bus_subscribe(bus, &s), 0);
+	for (int64_t i = 0; i < 10; i++)
+		publish_state(bus, i);
+	publish_raw(longer, size + 1);
+	bus_drain(bus);
+	ck_assert(handled == 1 && held == 0);
+	welcome = false;
+	publish_state(bus, 11);
+	bus_drain(bus);
+	ck_assert(handled == 2 && held == 0);
+	billiard_table_state_t wrong = {.ball_count = 23};
+	bus_publish(bus, "STATE", &bus_table_state, &wrong);
+	bus_drain(bus);
+	ck_assert(handled == 2 && held == 0);
+	free(longer);
+	free(bytes);
+}
+END_TEST
+
+/* ---- what was ignored -------------------------------------------------------------------------------------------- */
+
+static struct {
+	int count;
+	enum bus_fault fault;
+	char channel[64], reason[128];
+	int64_t seq; /* of the message, -1: none */
+} ignored;
+
+static void on_ignored(void *context, const struct bus_ignored *what)
+{
+	ck_assert_ptr_eq(context, &ignored);
+	ignored.count++;
+	ignored.fault = what->fault;
+	snprintf(ignored.channel, sizeof ignored.channel, "%s", what->channel);
+	snprintf(ignored.reason, sizeof ignored.reason, "%s", what->reason);
+	ignored.seq = what->message ? ((const billiard_table_state_t *)what->message)->seq : -1;
+}
+
+START_TEST(what_is_ignored_is_told_with_its_fault)
+{
+	memset(&ignored, 0, sizeof ignored);
+	subscribe(BUS_EACH);
+	bus_on_ignored(bus, on_ignored, &ignored);
+	publish_raw("x", 1);
+	bus_drain(bus);
+	ck_assert(ignored.count == 1 && ignored.fault == BUS_MALFORMED && ignored.seq == -1);
+	ck_assert_str_eq(ignored.channel, "STATE");
+	ck_assert_str_eq(ignored.reason, "foreign or malformed, 1 bytes");
+	billiard_table_state_t wrong = {.seq = 5, .ball_count = 23};
+	bus_publish(bus, "STATE", &bus_table_state, &wrong);
+	bus_drain(bus);
+	ck_assert(ignored.count == 2 && ignored.fault == BUS_RANGE && ignored.seq == 5);
+	ck_assert_str_eq(ignored.reason, "ball_count: found 23, allowed 0..22");
+	ck_assert_str_eq(bus_last_ignored(bus), "STATE: ball_count: found 23, allowed 0..22");
+	ck_assert(handled == 0 && bus_received(bus) == 0);
+	welcome = false;
+	publish_state(bus, 6);
+	bus_drain(bus);
+	ck_assert(ignored.count == 3 && ignored.fault == BUS_REFUSED && ignored.seq == 6);
+	ck_assert(bus_ignored(bus) == 3 && bus_received(bus) == 1);
+}
+END_TEST
+
 /* A flood is handled in pieces, so that timers and signals get their turn; nothing of it is lost. */
 START_TEST(a_flood_is_handled_in_pieces)
 {
@@ -502,6 +592,8 @@ Suite *test_suite(void)
 	tcase_add_test(memory, latest_is_the_newest_and_only_it);
 	tcase_add_test(memory, a_bad_message_behind_a_good_one_does_not_cost_it);
 	tcase_add_test(memory, closing_with_messages_waiting_frees_them);
+	tcase_add_test(memory, every_message_decoded_is_freed_once);
+	tcase_add_test(memory, what_is_ignored_is_told_with_its_fault);
 	tcase_add_test(memory, a_flood_is_handled_in_pieces);
 	tcase_add_test(memory, subscriptions_have_an_end);
 	tcase_add_test(memory, a_channel_that_is_no_expression_is_an_error);

@@ -284,6 +284,49 @@ START_TEST(a_request_that_somebody_else_cancelled_gets_a_new_id)
 }
 END_TEST
 
+/* The camera saw the shot begin and nothing after it. */
+START_TEST(a_shot_without_an_end_is_given_up)
+{
+	proposed();
+	shot();
+	ck_assert_int_eq(c.fsm.state, FSM_SHOT);
+	now += 45;
+	controller_tick(&c, now);
+	ck_assert_int_eq(c.fsm.state, FSM_SHOT);
+	now += 45;
+	controller_tick(&c, now);
+	ck_assert_int_eq(c.fsm.state, FSM_WATCHING);
+	frames(MANY);
+	ck_assert(c.fsm.state == FSM_PLANNING && requests == 2);
+}
+END_TEST
+
+/* The refusal of a later improvement, or a repeated final answer, does not take the proposal off. */
+START_TEST(no_plan_after_a_plan_changes_nothing)
+{
+	proposed();
+	int64_t before = draws;
+	ck_assert(take(answer(PLAN_MESSAGE_NONE, 0)));
+	ck_assert(take(answer(PLAN_MESSAGE_REFUSED, 0)));
+	ck_assert(c.fsm.state == FSM_SHOWING && c.draw.plan_id == c.request.id && draws == before);
+	frames(MANY);
+	ck_assert_int_eq(requests, 1);
+}
+END_TEST
+
+/* Only a final "none" is one: better answers may still come. */
+START_TEST(an_interim_no_plan_waits_for_the_final_one)
+{
+	frames(MANY);
+	billiard_plan_t *plan = answer(PLAN_MESSAGE_NONE, 0);
+	plan->is_final = 0;
+	ck_assert(take(plan));
+	ck_assert_int_eq(c.fsm.state, FSM_PLANNING);
+	ck_assert(take(answer(PLAN_MESSAGE_OK, 0.5)));
+	ck_assert_int_eq(c.fsm.state, FSM_SHOWING);
+}
+END_TEST
+
 START_TEST(late_and_foreign_answers_are_ignored)
 {
 	ck_assert(!take(answer(PLAN_MESSAGE_OK, 0.5))); /* nothing was asked: id 0 */
@@ -582,6 +625,9 @@ Suite *test_suite(void)
 	tcase_set_timeout(faults, 60);
 	tcase_add_test(faults, a_lost_request_or_answer_is_repeated);
 	tcase_add_test(faults, a_request_that_somebody_else_cancelled_gets_a_new_id);
+	tcase_add_test(faults, a_shot_without_an_end_is_given_up);
+	tcase_add_test(faults, no_plan_after_a_plan_changes_nothing);
+	tcase_add_test(faults, an_interim_no_plan_waits_for_the_final_one);
 	tcase_add_test(faults, late_and_foreign_answers_are_ignored);
 	tcase_add_test(faults, doubled_and_late_frames_are_ignored);
 	tcase_add_test(faults, malformed_frames_change_nothing);

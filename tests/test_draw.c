@@ -342,6 +342,35 @@ START_TEST(path_of_a_ball_that_comes_back)
 }
 END_TEST
 
+static bool ring_at(vec2 centre, double radius)
+{
+	for (int i = 0; i < list.item_count; i++)
+		if (list.items[i].kind == DRAW_RING && vec2_dist(item_point(&list.items[i], 0), centre) < 1e-6 &&
+		    fabs(list.items[i].radius - radius) < 1e-9)
+			return true;
+	return false;
+}
+
+/* A ring says where a ball comes to rest; one that falls rests nowhere. */
+START_TEST(balls_that_fall_have_no_place_of_rest)
+{
+	struct table table = begin_plan();
+	struct draw_options options = draw_options_default();
+	const vec2 rest = {1.0, 0.25};
+	billiard_plan_shot_t *shot = &plan.entries[0].shots[0];
+	draw_proposal(&list, &table, &plan, 0, 0, &options);
+	ck_assert(ring_at(rest, table.ball_radius));
+	shot->potted_count = 2;
+	shot->potted_ball[0] = 2;
+	shot->potted_ball[1] = 1;
+	draw_proposal(&list, &table, &plan, 0, 0, &options);
+	ck_assert(!ring_at(rest, table.ball_radius));
+	shot->potted_count = 1; /* the other ball only */
+	draw_proposal(&list, &table, &plan, 0, 0, &options);
+	ck_assert(ring_at(rest, table.ball_radius));
+}
+END_TEST
+
 static bool plan_passes(const struct table *table)
 {
 	char reason[128];
@@ -426,6 +455,7 @@ Suite *test_suite(void)
 	tcase_add_test(proposal, no_light_touches_a_ball);
 	tcase_add_test(proposal, text_lies_free);
 	tcase_add_test(proposal, opening_position_has_text_and_rings);
+	tcase_add_test(proposal, balls_that_fall_have_no_place_of_rest);
 	tcase_add_test(proposal, plans_that_cannot_be_drawn_are_stopped_at_the_border);
 	tcase_add_test(proposal, the_longest_numbers_stay_within_their_text);
 	tcase_add_test(proposal, without_keyframes_there_is_an_aim);

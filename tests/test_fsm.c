@@ -167,6 +167,10 @@ START_TEST(only_waiting_states_time_out)
 	struct fsm fsm = at(FSM_PLANNING);
 	ck_assert_double_eq_tol(fsm_timeout(&fsm, 5, 12), 3, 1e-12);
 	ck_assert_double_eq(fsm_timeout(&fsm, 5, 1000), 0);
+	/* A shot that nobody saw come to rest: not while balls can still roll, but not for ever. */
+	fsm = at(FSM_SHOT);
+	ck_assert_double_gt(fsm_timeout(&fsm, 5, fsm.since + 45), 0);
+	ck_assert_double_eq(fsm_timeout(&fsm, 5, fsm.since + 90), 0);
 }
 END_TEST
 

@@ -165,6 +165,23 @@ START_TEST(asked_again_it_repeats_the_last_answer)
 }
 END_TEST
 
+/* Answers wait until the loop comes: a final one is never overwritten, also not by another of the same request. */
+START_TEST(final_answers_wait_side_by_side)
+{
+	struct planner_service_figures f;
+	planner_service_request(service, make(5, true));
+	do
+		planner_service_figures(service, &f);
+	while (f.last_final == 0 || f.busy);
+	planner_service_refuse(service, &request, "refused meanwhile");
+	int finals = 0;
+	while (planner_service_answer(service, &answer))
+		if (answer.is_final)
+			ck_assert_int_eq(answer.status, finals++ == 0 ? PLAN_MESSAGE_OK : PLAN_MESSAGE_REFUSED);
+	ck_assert_int_eq(finals, 2);
+}
+END_TEST
+
 START_TEST(asked_again_while_it_runs_it_goes_on)
 {
 	planner_service_request(service, make(5, false));
@@ -313,6 +330,7 @@ Suite *test_suite(void)
 	tcase_add_test(life, the_same_request_gives_the_same_plans);
 	tcase_add_test(life, a_newer_request_replaces_the_running_one);
 	tcase_add_test(life, asked_again_it_repeats_the_last_answer);
+	tcase_add_test(life, final_answers_wait_side_by_side);
 	tcase_add_test(life, asked_again_while_it_runs_it_goes_on);
 	tcase_add_test(life, a_cancelled_request_is_answered_as_such_also_when_asked_again);
 	tcase_add_test(life, bad_requests_are_refused_with_the_reason);

@@ -4,6 +4,7 @@
 #include <errno.h>
 #include <fcntl.h>
 #include <getopt.h>
+#include <math.h>
 #include <signal.h>
 #include <stdio.h>
 #include <stdlib.h>
@@ -191,6 +192,43 @@ START_TEST(timers_repeat_and_the_exit_status_is_handed_on)
 }
 END_TEST
 
+/* As after SIGSTOP or a suspended machine. */
+static int on_blocked_tick(sd_event_source *source, uint64_t usec, void *context)
+{
+	(void)usec;
+	double *resumed = context;
+	ticks++;
+	if (ticks == 1) {
+		usleep(400000);
+		*resumed = clock_seconds();
+	}
+	return clock_seconds() - *resumed > 0.1 ? sd_event_exit(sd_event_source_get_event(source), 0) : 0;
+}
+
+START_TEST(a_timer_does_not_catch_up_after_a_stop)
+{
+	double resumed = 0;
+	ticks = 0;
+	ck_assert_int_eq(process_every(&process, 10000, on_blocked_tick, &resumed), 0);
+	process_run(&process);
+	/* The first, one that was due meanwhile, and one each 10 ms; with the 40 that were missed it would be more than 50. */
+	double took = clock_seconds() - resumed;
+	ck_assert_int_le(ticks, 3 + (int)(took / 0.01));
+	ck_assert_int_le(ticks, 40);
+}
+END_TEST
+
+START_TEST(numbers_that_are_none_do_not_silence_a_process)
+{
+	process_metric(&process, "ratio", "1", NAN);
+	process_metric(&process, "rate", "1/s", INFINITY);
+	process_state(&process, "odd");
+	bus_drain(process.bus);
+	ck_assert_int_eq(statuses, 1);
+	ck_assert(status.metric_count == 2 && status.metrics[0].value == 0 && status.metrics[1].value == 0);
+}
+END_TEST
+
 static int on_third_status(sd_event_source *source, uint64_t usec, void *context)
 {
 	(void)source, (void)usec, (void)context;
@@ -257,6 +295,8 @@ Suite *test_suite(void)
 	tcase_add_test(running, states_are_said_when_they_change);
 	tcase_add_test(running, errors_are_kept_and_logged_once);
 	tcase_add_test(running, metrics_are_named_once_and_never_too_many);
+	tcase_add_test(running, numbers_that_are_none_do_not_silence_a_process);
+	tcase_add_test(running, a_timer_does_not_catch_up_after_a_stop);
 	tcase_add_test(running, timers_repeat_and_the_exit_status_is_handed_on);
 	tcase_add_test(running, status_comes_every_second_and_sigterm_ends_with_0);
 	tcase_add_test(running, ignored_messages_are_counted_and_logged);
