@@ -42,7 +42,7 @@ static void use_plan(const billiard_plan_t *plan)
 	static const struct draw_options all = {true, true, true, true};
 	if (!plan_check(plan, &config.table) || plan->entry_count == 0)
 		return;
-	draw_proposal(&list, &config.table, plan, 0, 0, &all);
+	draw_proposal(&list, &config.table, &(struct draw_subject){plan, 0, 0}, &all);
 	if (!message_check(&message_draw_list, &list, text, sizeof text) || !draw_check(&list))
 		abort();
 	plan_message_animation(&animation, plan, 0, 0);

@@ -130,7 +130,7 @@ START_TEST(items_keep_what_they_are_given)
 	ck_assert(draw_polyline(&list, line, 3, 0.01, 0xff8040c0));
 	ck_assert(draw_dashed(&list, line, 2, 0.02, 0xffffffff));
 	ck_assert(draw_ring(&list, (vec2){1, 1}, 0.05, 0.005, 0xffffffff));
-	ck_assert(draw_disc(&list, (vec2){1, 1}, 0.05, 0xffffffff));
+	ck_assert(draw_ring(&list, (vec2){1, 1}, 0.05, 0.01, 0xffffffff));
 	ck_assert(draw_text(&list, (vec2){1, 1}, 0.05, 0xffffffff, "1.2 m/s"));
 	ck_assert_int_eq(list.item_count, 5);
 	ck_assert_int_eq(list.point_count, 8);
@@ -153,8 +153,8 @@ START_TEST(full_list_takes_nothing)
 	ck_assert(!draw_ring(&list, (vec2){0, 0}, 1, 0.01, 1));
 	draw_clear(&list);
 	for (int i = 0; i < DRAW_ITEM_MAX; i++)
-		ck_assert(draw_disc(&list, (vec2){0, 0}, 1, 1));
-	ck_assert(!draw_disc(&list, (vec2){0, 0}, 1, 1));
+		ck_assert(draw_ring(&list, (vec2){0, 0}, 1, 0.01, 1));
+	ck_assert(!draw_ring(&list, (vec2){0, 0}, 1, 0.01, 1));
 	ck_assert(passes(&list));
 }
 END_TEST
@@ -189,6 +189,14 @@ START_TEST(check_refuses_what_would_hurt)
 	good_list(), list.ys[1] = 1e9, ck_assert(!passes(&list));
 	good_list(), list.items[0].kind = 6, ck_assert(!passes(&list));
 	good_list(), list.items[0].kind = -1, ck_assert(!passes(&list));
+	for (int8_t kind = 0; kind < 6; kind++) {
+		good_list();
+		list.items[0].kind = kind;
+		ck_assert_int_eq(passes(&list), kind == DRAW_POLYLINE); /* two points: no ring, no text */
+		good_list();
+		list.items[1].kind = kind; /* the kinds between are no more */
+		ck_assert_int_eq(passes(&list), kind == DRAW_POLYLINE || kind == DRAW_RING || kind == DRAW_TEXT);
+	}
 	good_list(), list.items[0].point_count = 0, ck_assert(!passes(&list));
 	good_list(), list.items[0].point_count = INT32_MAX, ck_assert(!passes(&list));
 	good_list(), list.items[0].point_first = INT32_MAX, ck_assert(!passes(&list));
@@ -206,7 +214,7 @@ START_TEST(proposal_shows_its_parts)
 {
 	struct table table = begin_plan();
 	struct draw_options options = draw_options_default();
-	draw_proposal(&list, &table, &plan, 0, 0, &options);
+	draw_proposal(&list, &table, &(struct draw_subject){&plan, 0, 0}, &options);
 	ck_assert(passes(&list));
 	ck_assert_int_eq(list.plan_id, 7);
 	ck_assert_int_ge(count_items(DRAW_POLYLINE, false), 2); /* cue ball to contact, red to its end */
@@ -227,14 +235,14 @@ END_TEST
 START_TEST(options_switch_parts_off)
 {
 	struct table table = begin_plan();
-	draw_proposal(&list, &table, &plan, 0, 0, &(struct draw_options){0});
+	draw_proposal(&list, &table, &(struct draw_subject){&plan, 0, 0}, &(struct draw_options){0});
 	ck_assert_int_eq(count_items(DRAW_POLYLINE, true), 0);
 	int bare = list.item_count;
-	draw_proposal(&list, &table, &plan, 0, 0, &(struct draw_options){.halo = true});
+	draw_proposal(&list, &table, &(struct draw_subject){&plan, 0, 0}, &(struct draw_options){.halo = true});
 	ck_assert_int_gt(list.item_count, bare);
-	draw_proposal(&list, &table, &plan, 0, 0, &(struct draw_options){.table = true});
+	draw_proposal(&list, &table, &(struct draw_subject){&plan, 0, 0}, &(struct draw_options){.table = true});
 	ck_assert_int_eq(list.item_count, bare + table.cushion_count + table.pocket_count);
-	draw_proposal(&list, &table, &plan, 0, 0, &(struct draw_options){.info = true});
+	draw_proposal(&list, &table, &(struct draw_subject){&plan, 0, 0}, &(struct draw_options){.info = true});
 	ck_assert_int_eq(list.item_count, bare + 3);
 }
 END_TEST
@@ -247,7 +255,7 @@ START_TEST(no_light_touches_a_ball)
 		struct table table = begin_plan();
 		for (int i = 3; i < BALL_MAX; i++)
 			put_ball(i, COLOUR_RED, (vec2){random_in(&random, -0.9, 0.9), random_in(&random, -0.44, 0.44)});
-		draw_proposal(&list, &table, &plan, 0, 0, &options);
+		draw_proposal(&list, &table, &(struct draw_subject){&plan, 0, 0}, &options);
 		ck_assert(passes(&list));
 		for (int i = 0; i < BALL_MAX; i++) {
 			vec2 ball = {plan.entries[0].shots[0].start_x[i], plan.entries[0].shots[0].start_y[i]};
@@ -266,7 +274,7 @@ START_TEST(text_lies_free)
 		for (int i = 3; i < BALL_MAX; i++)
 			put_ball(i, COLOUR_RED, (vec2){random_in(&random, -0.9, 0.9), random_in(&random, -0.44, 0.44)});
 		struct draw_options options = draw_options_default();
-		draw_proposal(&list, &table, &plan, 0, 0, &options);
+		draw_proposal(&list, &table, &(struct draw_subject){&plan, 0, 0}, &options);
 		const billiard_draw_item_t *text = find_text("m/s");
 		if (!text)
 			continue;
@@ -292,13 +300,13 @@ START_TEST(opening_position_has_text_and_rings)
 	struct ball ball[SCENE_RACK_COUNT];
 	scene_rack(&table, ball);
 	struct draw_options options = draw_options_default();
-	draw_idle(&list, &table, ball, SCENE_RACK_COUNT, "no proposal", &options);
+	draw_idle(&list, &table, &(struct draw_resting){ball, SCENE_RACK_COUNT, "no proposal"}, &options);
 	ck_assert(passes(&list));
 	ck_assert_ptr_nonnull(find_text("no proposal"));
 	ck_assert_int_ge(count_items(DRAW_RING, false), 3);
 	for (int i = 0; i < SCENE_RACK_COUNT; i++)
 		ck_assert_double_ge(list_distance(ball[i].pos), 1.9 * table.ball_radius);
-	draw_idle(&list, &table, ball, SCENE_RACK_COUNT, "", &options);
+	draw_idle(&list, &table, &(struct draw_resting){ball, SCENE_RACK_COUNT, ""}, &options);
 	ck_assert_ptr_null(find_text(""));
 }
 END_TEST
@@ -358,15 +366,15 @@ START_TEST(balls_that_fall_have_no_place_of_rest)
 	struct draw_options options = draw_options_default();
 	const vec2 rest = {1.0, 0.25};
 	billiard_plan_shot_t *shot = &plan.entries[0].shots[0];
-	draw_proposal(&list, &table, &plan, 0, 0, &options);
+	draw_proposal(&list, &table, &(struct draw_subject){&plan, 0, 0}, &options);
 	ck_assert(ring_at(rest, table.ball_radius));
 	shot->potted_count = 2;
 	shot->potted_ball[0] = 2;
 	shot->potted_ball[1] = 1;
-	draw_proposal(&list, &table, &plan, 0, 0, &options);
+	draw_proposal(&list, &table, &(struct draw_subject){&plan, 0, 0}, &options);
 	ck_assert(!ring_at(rest, table.ball_radius));
 	shot->potted_count = 1; /* the other ball only */
-	draw_proposal(&list, &table, &plan, 0, 0, &options);
+	draw_proposal(&list, &table, &(struct draw_subject){&plan, 0, 0}, &options);
 	ck_assert(ring_at(rest, table.ball_radius));
 }
 END_TEST
@@ -411,7 +419,7 @@ START_TEST(the_longest_numbers_stay_within_their_text)
 	for (size_t i = 0; i < sizeof angles / sizeof angles[0]; i++) {
 		plan.entries[0].shots[0].angle = angles[i];
 		plan.entries[0].shots[0].speed = i % 2 ? 99.9 : 1e300;
-		draw_proposal(&list, &table, &plan, 0, 0, &options);
+		draw_proposal(&list, &table, &(struct draw_subject){&plan, 0, 0}, &options);
 		ck_assert(passes(&list));
 	}
 }
@@ -421,7 +429,7 @@ START_TEST(without_keyframes_there_is_an_aim)
 {
 	struct table table = begin_plan();
 	plan.entries[0].shots[0].keyframe_count = 0;
-	draw_proposal(&list, &table, &plan, 0, 0, &(struct draw_options){0});
+	draw_proposal(&list, &table, &(struct draw_subject){&plan, 0, 0}, &(struct draw_options){0});
 	ck_assert_int_ge(count_items(DRAW_POLYLINE, false), 2);
 }
 END_TEST
@@ -436,7 +444,7 @@ START_TEST(a_break_fits)
 		put_keyframe(i % BALL_MAX, EVENT_BALL_BALL, i * 0.01, i * 0.01 + 1, (vec2){0.001 * i, 0.1},
 			     (vec2){0.1, 1}, (vec2){2, -1});
 	struct draw_options options = draw_options_default();
-	draw_proposal(&list, &table, &plan, 0, 0, &options);
+	draw_proposal(&list, &table, &(struct draw_subject){&plan, 0, 0}, &options);
 	ck_assert(passes(&list));
 	ck_assert_int_gt(list.item_count, 20);
 }

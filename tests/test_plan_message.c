@@ -517,7 +517,7 @@ START_TEST(spoiled_plans_are_refused_or_harmless)
 		if (!plan_passes(back) || back->entry_count == 0)
 			continue;
 		accepted++;
-		draw_proposal(list, &config.table, back, 0, 0, &options);
+		draw_proposal(list, &config.table, &(struct draw_subject){back, 0, 0}, &options);
 		ck_assert(list_passes(list));
 		plan_message_animation(animation, back, 0, 0);
 		ck_assert(animation_passes(animation));

@@ -63,7 +63,7 @@ START_TEST(things_lie_where_the_homography_puts_them)
 {
 	struct config_projector projector = plain_projector();
 	struct render *render = begin(&projector);
-	draw_disc(&list, (vec2){0.5, 0.25}, 0.02, 0xff0000ff);
+	draw_ring(&list, (vec2){0.5, 0.25}, 0.01, 0.024, 0xff0000ff);
 	draw_polyline(&list, (vec2[]){{-0.5, -0.25}, {0.25, -0.25}}, 2, 0.01, 0x00ff00ff);
 	draw_ring(&list, (vec2){-0.5, 0.25}, 0.05, 0.01, 0x0000ffff);
 	render_draw(render, &list, NULL, 0);
@@ -135,7 +135,7 @@ START_TEST(layers_order_what_overlaps)
 {
 	struct config_projector projector = plain_projector();
 	struct render *render = begin(&projector);
-	draw_disc(&list, (vec2){0, 0}, 0.05, 0x0000ffff);
+	draw_ring(&list, (vec2){0, 0}, 0.025, 0.06, 0x0000ffff);
 	draw_polyline(&list, (vec2[]){{-0.2, 0}, {0.2, 0}}, 2, 0.02, 0xff0000ff);
 	render_draw(render, &list, NULL, 0);
 	ck_assert_uint_eq(pixel(render, 480, 270), 0x0000ff);

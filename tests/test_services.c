@@ -286,7 +286,7 @@ START_TEST(the_projector_draws_what_it_is_told)
 	billiard_draw_list_t list;
 	memset(&list, 0, sizeof list);
 	draw_clear(&list);
-	draw_disc(&list, (vec2){0.2, 0.1}, 0.05, 0xff8000ff);
+	draw_ring(&list, (vec2){0.2, 0.1}, 0.025, 0.06, 0xff8000ff);
 	bus_publish(bus, "DRAW", &bus_draw_list, &list);
 	list.item_count = 9999; /* is ignored */
 	bus_publish(bus, "DRAW", &bus_draw_list, &list);

@@ -368,7 +368,7 @@ static void add_picture(const char *model_name, const struct cost_profile *profi
 	for (int entry = 0; entry < 2; entry++) {
 		char name[NAME_SIZE];
 		struct draw_options options = {.halo = true, .other_paths = true, .table = entry, .info = entry};
-		draw_proposal(&list, &table, &plan, entry, 0, &options);
+		draw_proposal(&list, &table, &(struct draw_subject){&plan, entry, 0}, &options);
 		plan_message_animation(&animation, &plan, entry, 0);
 		snprintf(name, sizeof name, "light.%s.%d", model_name, entry);
 		add(name, "%016" PRIx64 " %d items %016" PRIx64, list_hash(&list), list.item_count,

@@ -40,7 +40,8 @@ static void draw_nothing(struct controller *c, bool with_note)
 	bool at_rest = c->fsm.state == FSM_PLANNING || c->fsm.state == FSM_SHOWING;
 	snprintf(c->drawn_note, sizeof c->drawn_note, "%s", with_note ? c->note : "");
 	draw_clear(&c->draw);
-	draw_idle(&c->draw, &c->config->table, c->seen.ball, at_rest ? c->seen.count : 0, c->drawn_note, &c->options);
+	draw_idle(&c->draw, &c->config->table,
+		  &(struct draw_resting){c->seen.ball, at_rest ? c->seen.count : 0, c->drawn_note}, &c->options);
 	c->draw.plan_id = 0;
 	c->animation = (billiard_animation_t){0};
 	c->output.draw = c->output.animation = true;
@@ -49,7 +50,7 @@ static void draw_nothing(struct controller *c, bool with_note)
 static void draw_shown(struct controller *c)
 {
 	draw_clear(&c->draw);
-	draw_proposal(&c->draw, &c->config->table, &c->plan, c->entry, c->shot, &c->options);
+	draw_proposal(&c->draw, &c->config->table, &(struct draw_subject){&c->plan, c->entry, c->shot}, &c->options);
 	c->draw.plan_id = c->plan.request_id;
 	c->output.draw = true;
 }

@@ -76,16 +76,6 @@ bool draw_ring(billiard_draw_list_t *list, vec2 centre, double radius, double wi
 	return true;
 }
 
-bool draw_disc(billiard_draw_list_t *list, vec2 centre, double radius, uint32_t rgba)
-{
-	billiard_draw_item_t *item = add(list, DRAW_DISC, DRAW_LAYER_HALO, &centre, 1);
-	if (!item)
-		return false;
-	item->radius = radius;
-	item->rgba = (int32_t)rgba;
-	return true;
-}
-
 bool draw_text(billiard_draw_list_t *list, vec2 at, double height, uint32_t rgba, const char *text)
 {
 	billiard_draw_item_t *item = add(list, DRAW_TEXT, DRAW_LAYER_TEXT, &at, 1);
@@ -107,7 +97,9 @@ double draw_text_width(const char *text, double height)
 
 static bool item_check(const billiard_draw_list_t *list, const billiard_draw_item_t *item)
 {
-	bool one_point = item->kind == DRAW_RING || item->kind == DRAW_DISC || item->kind == DRAW_TEXT;
+	bool one_point = item->kind == DRAW_RING || item->kind == DRAW_TEXT;
+	if (!one_point && item->kind != DRAW_POLYLINE)
+		return false;
 	if (item->point_first > list->point_count || item->point_count > list->point_count - item->point_first)
 		return false;
 	return (!one_point || item->point_count == 1) && memchr(item->text, 0, sizeof(item->text)) != NULL;

@@ -7,7 +7,8 @@
 #include "physics/table.h"
 
 enum { DRAW_ITEM_MAX = 160, DRAW_POINT_MAX = 2048 };
-enum draw_kind { DRAW_POLYLINE, DRAW_OUTLINE, DRAW_FILLED, DRAW_RING, DRAW_DISC, DRAW_TEXT, DRAW_KIND_COUNT };
+/* Numbers of the protocol: those between belong to kinds that are no more. */
+enum draw_kind { DRAW_POLYLINE = 0, DRAW_RING = 3, DRAW_TEXT = 5 };
 /* Drawn from the lowest up; within a layer in the order of the list. */
 enum draw_layer { DRAW_LAYER_TABLE, DRAW_LAYER_PATH, DRAW_LAYER_HALO, DRAW_LAYER_TEXT };
 
@@ -25,7 +26,6 @@ void draw_clear(billiard_draw_list_t *list);
 bool draw_polyline(billiard_draw_list_t *list, const vec2 *point, int count, double width, uint32_t rgba);
 bool draw_dashed(billiard_draw_list_t *list, const vec2 *point, int count, double width, uint32_t rgba);
 bool draw_ring(billiard_draw_list_t *list, vec2 centre, double radius, double width, uint32_t rgba);
-bool draw_disc(billiard_draw_list_t *list, vec2 centre, double radius, uint32_t rgba);
 /* at: left end of the baseline, text runs along +x with its top towards +y; height: of the font's em square. Cut at 63
  * bytes. */
 bool draw_text(billiard_draw_list_t *list, vec2 at, double height, uint32_t rgba, const char *text);
@@ -38,14 +38,23 @@ uint32_t draw_ball_rgba(int colour);
 /* True when a list whose numbers the bus let through (message_check()) agrees with itself: to be called on every list from the wire. */
 bool draw_check(const billiard_draw_list_t *list);
 
-/* One shot of a proposal: halos on the balls it is played from, ghost ball, solid paths of cue and object ball, dashed paths
- * of the others, a mark at the pocket, speed and pocket as text. shot indexes plan->entries[entry].shots. table: for radius
- * and pockets. No light falls on or next to a ball: the camera has to see its outline. plan: one
- * that plan_check() accepted. */
-void draw_proposal(billiard_draw_list_t *list, const struct table *table, const billiard_plan_t *plan, int entry,
-		   int shot, const struct draw_options *options);
-/* Halos only (no proposal), and a line of text at the bottom (empty: none). */
-void draw_idle(billiard_draw_list_t *list, const struct table *table, const struct ball *ball, int count,
-	       const char *note, const struct draw_options *options);
+/* One shot of a proposal: plan->entries[entry].shots[shot]. */
+struct draw_subject {
+	const billiard_plan_t *plan; /* borrowed; plan_check() accepted it */
+	int entry, shot;
+};
+/* Halos on the balls it is played from, ghost ball, solid paths of cue and object ball, dashed paths of the others, a mark at the pocket,
+ * speed, angle and pocket as text. table: for radius and pockets. No light falls on or next to a ball: the camera has to see its outline. */
+void draw_proposal(billiard_draw_list_t *list, const struct table *table, const struct draw_subject *subject,
+		   const struct draw_options *options);
+
+/* Balls without a proposal, and a line of text at the bottom (empty: none). All borrowed. */
+struct draw_resting {
+	const struct ball *ball;
+	int count;
+	const char *note;
+};
+void draw_idle(billiard_draw_list_t *list, const struct table *table, const struct draw_resting *resting,
+	       const struct draw_options *options);
 
 #endif

@@ -231,11 +231,12 @@ static void draw_infos(const struct scene *scene)
 	}
 }
 
-void draw_proposal(billiard_draw_list_t *list, const struct table *table, const billiard_plan_t *plan, int entry,
-		   int shot, const struct draw_options *options)
+void draw_proposal(billiard_draw_list_t *list, const struct table *table, const struct draw_subject *subject,
+		   const struct draw_options *options)
 {
-	const billiard_plan_entry_t *shots = &plan->entries[entry];
-	struct scene scene = {list, table, plan, &shots->shots[shot], options, {0}, plan->ball_count};
+	const billiard_plan_t *plan = subject->plan;
+	const billiard_plan_entry_t *entry = &plan->entries[subject->entry];
+	struct scene scene = {list, table, plan, &entry->shots[subject->shot], options, {0}, plan->ball_count};
 	draw_clear(list);
 	list->plan_id = plan->request_id;
 	draw_field_init(&scene.field, table);
@@ -249,28 +250,29 @@ void draw_proposal(billiard_draw_list_t *list, const struct table *table, const 
 	draw_pocket(&scene);
 	draw_paths(&scene);
 	if (scene.shot->speed > 0)
-		draw_labels(&scene, shot + 1, shots->shot_count);
+		draw_labels(&scene, subject->shot + 1, entry->shot_count);
 	if (options->info)
 		draw_infos(&scene);
 }
 
-void draw_idle(billiard_draw_list_t *list, const struct table *table, const struct ball *ball, int count,
-	       const char *note, const struct draw_options *options)
+void draw_idle(billiard_draw_list_t *list, const struct table *table, const struct draw_resting *resting,
+	       const struct draw_options *options)
 {
+	const struct ball *ball = resting->ball;
+	const struct draw_label note = {resting->note, {0, -table->width / 2}, TEXT_REACH, TEXT_HEIGHT, TEXT_RGBA};
 	struct draw_field field;
 	draw_clear(list);
 	draw_field_init(&field, table);
-	for (int i = 0; i < count; i++)
+	for (int i = 0; i < resting->count; i++)
 		if (ball[i].phase != BALL_POTTED)
 			draw_field_add(&field, ball[i].pos);
 	if (options->table)
 		draw_table(list, table);
 	if (options->halo)
 		draw_halos(&field, list);
-	if (note[0])
-		draw_field_text(&field, list,
-				&(struct draw_label){note, {0, -table->width / 2}, TEXT_REACH, TEXT_HEIGHT, TEXT_RGBA});
-	for (int i = 0; options->info && i < count; i++)
+	if (resting->note[0])
+		draw_field_text(&field, list, &note);
+	for (int i = 0; options->info && i < resting->count; i++)
 		if (ball[i].phase != BALL_POTTED)
 			draw_info(&field, list, ball[i].pos, ball_colour_name(ball[i].colour));
 }

@@ -1,6 +1,5 @@
 #include "app/light/render.h"
 
-#include <assert.h>
 #include <cairo.h>
 #include <errno.h>
 #include <math.h>
@@ -142,29 +141,13 @@ static void draw_item(const struct render *render, const billiard_draw_list_t *l
 		if (path_points(render, list, item))
 			stroke(render, at, item->width, item->dash, item->gap);
 		break;
-	case DRAW_OUTLINE:
-		if (path_points(render, list, item)) {
-			cairo_close_path(render->cairo);
-			stroke(render, at, item->width, item->dash, item->gap);
-		}
-		break;
-	case DRAW_FILLED:
-		if (path_points(render, list, item))
-			cairo_fill(render->cairo);
-		break;
 	case DRAW_RING:
 		if (path_circle(render, at, item->radius))
 			stroke(render, at, item->width, item->dash, item->gap);
 		break;
-	case DRAW_DISC:
-		if (path_circle(render, at, item->radius))
-			cairo_fill(render->cairo);
-		break;
 	case DRAW_TEXT:
 		draw_text_item(render, item, at);
 		break;
-	case DRAW_KIND_COUNT:
-		assert(false);
 	}
 }
 

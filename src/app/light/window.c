@@ -11,8 +11,9 @@ struct window {
 	SDL_Texture *texture;
 };
 
-int window_create(struct window **out, int width, int height, bool fullscreen, char *err, size_t err_size)
+int window_create(struct window **out, const struct config_projector *projector, char *err, size_t err_size)
 {
+	int width = projector->width, height = projector->height;
 	*out = NULL;
 	struct window *w = calloc(1, sizeof *w);
 	if (!w) {
@@ -20,7 +21,7 @@ int window_create(struct window **out, int width, int height, bool fullscreen, c
 		return -ENOMEM;
 	}
 	SDL_SetHint(SDL_HINT_NO_SIGNAL_HANDLERS, "1");
-	uint32_t flags = fullscreen ? SDL_WINDOW_FULLSCREEN_DESKTOP : SDL_WINDOW_RESIZABLE;
+	uint32_t flags = projector->fullscreen ? SDL_WINDOW_FULLSCREEN_DESKTOP : SDL_WINDOW_RESIZABLE;
 	if (SDL_InitSubSystem(SDL_INIT_VIDEO) == 0) {
 		w->window = SDL_CreateWindow("billiard-projector", SDL_WINDOWPOS_CENTERED, SDL_WINDOWPOS_CENTERED,
 					     width, height, flags);
@@ -34,7 +35,7 @@ int window_create(struct window **out, int width, int height, bool fullscreen, c
 		window_destroy(w);
 		return -ENODEV;
 	}
-	SDL_ShowCursor(fullscreen ? SDL_DISABLE : SDL_ENABLE);
+	SDL_ShowCursor(projector->fullscreen ? SDL_DISABLE : SDL_ENABLE);
 	*out = w;
 	return 0;
 }

@@ -6,10 +6,12 @@
 #include <stddef.h>
 #include <stdint.h>
 
+#include "app/config/config.h"
+
 struct window; /* opaque */
 
 /* 0, or -ENODEV with the reason (no display): the caller goes on without. Caller destroys. */
-int window_create(struct window **out, int width, int height, bool fullscreen, char *err, size_t err_size);
+int window_create(struct window **out, const struct config_projector *projector, char *err, size_t err_size);
 void window_destroy(struct window *window); /* NULL is fine */
 
 /* Shows a picture of the window's size: 32-bit xRGB, rows from the top. */

@@ -52,18 +52,12 @@ static void fill_shot(billiard_plan_shot_t *out, const struct plan_shot *shot, i
 	}
 }
 
-static bool add_keyframe(billiard_plan_t *out, const struct table *table, const struct ball *state, int ball,
-			 double begin, double end, enum event_kind event)
+static billiard_keyframe_t keyframe_of(const struct ball *state, int ball, const struct table *table)
 {
-	if (out->keyframe_count == PLAN_MESSAGE_KEYFRAMES)
-		return false;
 	vec2 a = motion_acceleration(state, table);
-	out->keyframes[out->keyframe_count++] = (billiard_keyframe_t){
-		.begin = begin,
-		.end = end,
+	return (billiard_keyframe_t){
 		.ball = (int16_t)ball,
 		.phase = (int8_t)state->phase,
-		.event = (int8_t)event,
 		.x = state->pos.x,
 		.y = state->pos.y,
 		.vx = state->vel.x,
@@ -71,28 +65,35 @@ static bool add_keyframe(billiard_plan_t *out, const struct table *table, const 
 		.ax = a.x,
 		.ay = a.y,
 	};
+}
+
+static bool add_keyframe(billiard_plan_t *out, const billiard_keyframe_t *keyframe, double end)
+{
+	if (out->keyframe_count == PLAN_MESSAGE_KEYFRAMES)
+		return false;
+	out->keyframes[out->keyframe_count] = *keyframe;
+	out->keyframes[out->keyframe_count++].end = end;
 	return true;
 }
 
 /* Keyframes of one ball: one per stretch of closed-form motion. False when there is no room. */
 static bool add_ball(billiard_plan_t *out, const struct trace *trace, int ball)
 {
-	double end = trace_end(trace), begin = 0;
-	struct ball state = trace->start[ball];
-	enum event_kind event = EVENT_STRIKE;
+	billiard_keyframe_t keyframe = keyframe_of(&trace->start[ball], ball, trace->table);
+	keyframe.event = EVENT_STRIKE;
 	for (int i = 0; i < trace->count; i++) {
 		const struct trace_entry *e = &trace->entry[i];
 		bool second = e->event.kind == EVENT_BALL_BALL && e->event.other == ball;
 		/* The states at the start are those after the strike. */
 		if ((e->event.ball != ball && !second) || e->event.kind == EVENT_STRIKE)
 			continue;
-		if (!add_keyframe(out, trace->table, &state, ball, begin, e->event.time, event))
+		if (!add_keyframe(out, &keyframe, e->event.time))
 			return false;
-		state = e->after[second];
-		begin = e->event.time;
-		event = e->event.kind;
+		keyframe = keyframe_of(&e->after[second], ball, trace->table);
+		keyframe.begin = e->event.time;
+		keyframe.event = (int8_t)e->event.kind;
 	}
-	return add_keyframe(out, trace->table, &state, ball, begin, end, event);
+	return add_keyframe(out, &keyframe, trace_end(trace));
 }
 
 /* All balls of one shot, or none. */

@@ -121,7 +121,7 @@ static int setup(struct projector *p, const struct process_options *options)
 	p->process.describe = describe;
 	p->process.context = p;
 	/* Without a display it still serves snapshots, and says so. */
-	if (window_create(&p->window, c->width, c->height, c->fullscreen, err, sizeof err) < 0)
+	if (window_create(&p->window, c, err, sizeof err) < 0)
 		process_error(&p->process, "%s", err);
 	err[0] = '\0';
 	if ((r = render_create(&p->render, c, err, sizeof err)) < 0 ||
