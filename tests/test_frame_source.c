@@ -3,6 +3,7 @@
 
 #include <dirent.h>
 #include <poll.h>
+#include <pthread.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
@@ -210,6 +211,74 @@ START_TEST(it_can_be_destroyed_at_any_moment)
 }
 END_TEST
 
+/* ---- the slot ---------------------------------------------------------------------------------------------------- */
+
+/* A camera never waits for the loop: what is taken is the newest, and what was replaced is counted. */
+START_TEST(a_live_frame_replaces_one_that_waits)
+{
+	struct frame_slot slot;
+	struct frame_source_frame mine = {0};
+	frame_slot_init(&slot);
+	for (int i = 0; i < 5; i++) {
+		snprintf(mine.name, sizeof mine.name, "%d", i);
+		ck_assert(frame_slot_offer(&slot, &mine, true));
+	}
+	ck_assert(slot.frames == 5 && slot.dropped == 4);
+	ck_assert(frame_slot_take(&slot, &mine));
+	ck_assert_str_eq(mine.name, "4");
+	ck_assert_int_eq(mine.seq, 5);
+	ck_assert(!frame_slot_take(&slot, &mine));
+	image_buffer_finish(&mine.image);
+	frame_slot_finish(&slot);
+}
+END_TEST
+
+static void *offer_two(void *context)
+{
+	struct frame_source_frame mine = {0};
+	bool first = frame_slot_offer(context, &mine, false), second = frame_slot_offer(context, &mine, false);
+	image_buffer_finish(&mine.image);
+	return first && second ? context : NULL;
+}
+
+START_TEST(other_frames_wait_until_they_are_taken)
+{
+	struct frame_slot slot;
+	struct frame_source_frame mine = {0};
+	pthread_t thread;
+	void *both;
+	frame_slot_init(&slot);
+	ck_assert_int_eq(pthread_create(&thread, NULL, offer_two, &slot), 0);
+	for (int64_t seq = 1; seq <= 2; seq++) {
+		while (!frame_slot_take(&slot, &mine))
+			usleep(1000);
+		ck_assert_int_eq(mine.seq, seq);
+	}
+	pthread_join(thread, &both);
+	ck_assert(both != NULL && slot.dropped == 0);
+	image_buffer_finish(&mine.image);
+	frame_slot_finish(&slot);
+}
+END_TEST
+
+START_TEST(a_stop_ends_every_wait)
+{
+	struct frame_slot slot;
+	pthread_t thread;
+	void *both;
+	frame_slot_init(&slot);
+	double begin = clock_seconds();
+	ck_assert(frame_slot_wait(&slot, 0.02));
+	ck_assert_double_ge(clock_seconds() - begin, 0.02);
+	ck_assert_int_eq(pthread_create(&thread, NULL, offer_two, &slot), 0);
+	frame_slot_stop(&slot);
+	pthread_join(thread, &both);
+	ck_assert_ptr_null(both);
+	ck_assert(!frame_slot_wait(&slot, 1e6));
+	frame_slot_finish(&slot);
+}
+END_TEST
+
 Suite *test_suite(void)
 {
 	Suite *suite = suite_create("frame_source");
@@ -224,5 +293,10 @@ Suite *test_suite(void)
 	tcase_add_test(sources, a_camera_that_is_away_is_tried_again);
 	tcase_add_test(sources, it_can_be_destroyed_at_any_moment);
 	suite_add_tcase(suite, sources);
+	TCase *slot = tcase_create("slot");
+	tcase_add_test(slot, a_live_frame_replaces_one_that_waits);
+	tcase_add_test(slot, other_frames_wait_until_they_are_taken);
+	tcase_add_test(slot, a_stop_ends_every_wait);
+	suite_add_tcase(suite, slot);
 	return suite;
 }

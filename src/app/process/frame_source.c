@@ -25,11 +25,8 @@ struct frame_source {
 	bool thread_runs;
 	int descriptor;
 
-	pthread_mutex_t lock;	/* of all below */
-	pthread_cond_t changed; /* slot taken, or stop */
-	bool stop, full;
-	struct frame_source_frame slot;
-	struct frame_source_figures figures;
+	struct frame_slot slot;
+	struct frame_source_figures figures; /* under the slot's lock; but frames and dropped, which the slot counts */
 };
 
 static void wake_loop(struct frame_source *s)
@@ -39,55 +36,28 @@ static void wake_loop(struct frame_source *s)
 		return; /* full counter: the loop is awake anyway */
 }
 
-static struct timespec deadline_in(double seconds)
-{
-	struct timespec t;
-	clock_gettime(CLOCK_MONOTONIC, &t);
-	double whole = (double)t.tv_sec + 1e-9 * (double)t.tv_nsec + seconds;
-	t.tv_sec = (time_t)whole;
-	t.tv_nsec = (long)((whole - (double)t.tv_sec) * 1e9);
-	return t;
-}
-
-/* Waits, but not past stop. False: stop. Locked. */
-static bool wait_until(struct frame_source *s, const struct timespec *deadline)
-{
-	while (!s->stop && pthread_cond_timedwait(&s->changed, &s->lock, deadline) != ETIMEDOUT)
-		;
-	return !s->stop;
-}
-
-/* Puts a frame into the slot. A live source replaces a frame that still waits; files wait for the taker. False: stop. */
 static bool offer(struct frame_source *s, struct frame_source_frame *frame, bool live)
 {
-	pthread_mutex_lock(&s->lock);
-	while (s->full && !live && !s->stop)
-		pthread_cond_wait(&s->changed, &s->lock);
-	s->figures.dropped += s->full;
-	struct frame_source_frame old = s->slot;
-	frame->utime = clock_utime();
-	frame->seq = ++s->figures.frames;
-	s->slot = *frame;
-	*frame = old;
-	s->full = true;
-	if (live)
-		s->figures.error[0] = '\0'; /* the camera is back */
-	bool go_on = !s->stop;
-	pthread_mutex_unlock(&s->lock);
+	bool go_on = frame_slot_offer(&s->slot, frame, live);
 	wake_loop(s);
 	return go_on;
 }
 
+/* error: "" when all is well again. */
+static void set_error(struct frame_source *s, const char *error)
+{
+	pthread_mutex_lock(&s->slot.lock);
+	snprintf(s->figures.error, sizeof s->figures.error, "%s", error);
+	s->figures.bad += error[0] != '\0';
+	pthread_mutex_unlock(&s->slot.lock);
+}
+
+/* False: stop. */
 static bool report(struct frame_source *s, const char *error, double wait)
 {
-	struct timespec until = deadline_in(wait);
-	pthread_mutex_lock(&s->lock);
-	snprintf(s->figures.error, sizeof s->figures.error, "%s", error);
-	s->figures.bad++;
+	set_error(s, error);
 	wake_loop(s);
-	bool go_on = wait > 0 ? wait_until(s, &until) : !s->stop;
-	pthread_mutex_unlock(&s->lock);
-	return go_on;
+	return frame_slot_wait(&s->slot, wait);
 }
 
 /* Copies pixels: the same photograph is shown again and again. */
@@ -110,15 +80,12 @@ static bool show(struct frame_source *s, struct frame_source_frame *frame, const
 	double period = 1 / s->def.fps;
 	int times = s->is_folder && s->hold > period ? (int)(s->hold / period + 0.5) : 1;
 	for (int i = 0; i < times; i++) {
-		struct timespec next = deadline_in(period);
+		double next = clock_seconds() + period;
 		if (!copy_frame(frame, image, name))
 			return report(s, "out of memory", 0);
 		if (!offer(s, frame, false))
 			return false;
-		pthread_mutex_lock(&s->lock);
-		bool go_on = wait_until(s, &next);
-		pthread_mutex_unlock(&s->lock);
-		if (!go_on)
+		if (!frame_slot_wait(&s->slot, next - clock_seconds()))
 			return false;
 	}
 	return true;
@@ -126,9 +93,9 @@ static bool show(struct frame_source *s, struct frame_source_frame *frame, const
 
 static void end(struct frame_source *s)
 {
-	pthread_mutex_lock(&s->lock);
+	pthread_mutex_lock(&s->slot.lock);
 	s->figures.ended = true;
-	pthread_mutex_unlock(&s->lock);
+	pthread_mutex_unlock(&s->slot.lock);
 	wake_loop(s);
 }
 
@@ -166,6 +133,7 @@ static void read_camera(struct frame_source *s)
 		int r = capture_next(s->capture, &frame.image, &info, err, sizeof err);
 		if (r > 0) {
 			snprintf(frame.name, sizeof frame.name, "%s", info.name);
+			set_error(s, "");
 			go_on = offer(s, &frame, true);
 			continue;
 		}
@@ -188,18 +156,6 @@ static void *source_thread(void *context)
 	return NULL;
 }
 
-static int init_locks(struct frame_source *s)
-{
-	pthread_condattr_t attributes;
-	pthread_condattr_init(&attributes);
-	pthread_condattr_setclock(&attributes, CLOCK_MONOTONIC);
-	pthread_mutex_init(&s->lock, NULL);
-	pthread_cond_init(&s->changed, &attributes);
-	pthread_condattr_destroy(&attributes);
-	s->descriptor = eventfd(0, EFD_CLOEXEC | EFD_NONBLOCK);
-	return s->descriptor < 0 ? -errno : 0;
-}
-
 int frame_source_create(struct frame_source **out, const struct frame_source_def *def, char *err, size_t err_size)
 {
 	*out = NULL;
@@ -212,7 +168,9 @@ int frame_source_create(struct frame_source **out, const struct frame_source_def
 	s->def = (struct capture_def){s->source, def->width, def->height, def->fps};
 	s->hold = def->hold;
 	s->is_folder = strncmp(s->source, "dir:", 4) == 0;
-	int r = init_locks(s);
+	frame_slot_init(&s->slot);
+	s->descriptor = eventfd(0, EFD_CLOEXEC | EFD_NONBLOCK);
+	int r = s->descriptor < 0 ? -errno : 0;
 	if (r < 0)
 		snprintf(err, err_size, "%s: %s", s->source, strerror(-r));
 	else if (strncmp(s->source, "v4l2:", 5) != 0)
@@ -233,18 +191,13 @@ void frame_source_destroy(struct frame_source *s)
 	if (!s)
 		return;
 	if (s->thread_runs) {
-		pthread_mutex_lock(&s->lock);
-		s->stop = true;
-		pthread_cond_broadcast(&s->changed);
-		pthread_mutex_unlock(&s->lock);
+		frame_slot_stop(&s->slot);
 		pthread_join(s->thread, NULL);
 	}
 	capture_close(s->capture);
-	image_buffer_finish(&s->slot.image);
 	if (s->descriptor >= 0)
 		close(s->descriptor);
-	pthread_cond_destroy(&s->changed);
-	pthread_mutex_destroy(&s->lock);
+	frame_slot_finish(&s->slot);
 	free(s);
 }
 
@@ -256,24 +209,16 @@ int frame_source_descriptor(const struct frame_source *s)
 bool frame_source_take(struct frame_source *s, struct frame_source_frame *frame)
 {
 	uint64_t drop;
-	pthread_mutex_lock(&s->lock);
-	bool any = s->full;
 	if (read(s->descriptor, &drop, sizeof drop) < 0)
 		drop = 0; /* nothing to reset */
-	if (any) {
-		struct frame_source_frame old = *frame;
-		*frame = s->slot;
-		s->slot = old;
-		s->full = false;
-		pthread_cond_broadcast(&s->changed);
-	}
-	pthread_mutex_unlock(&s->lock);
-	return any;
+	return frame_slot_take(&s->slot, frame);
 }
 
 void frame_source_figures(struct frame_source *s, struct frame_source_figures *out)
 {
-	pthread_mutex_lock(&s->lock);
+	pthread_mutex_lock(&s->slot.lock);
 	*out = s->figures;
-	pthread_mutex_unlock(&s->lock);
+	out->frames = s->slot.frames;
+	out->dropped = s->slot.dropped;
+	pthread_mutex_unlock(&s->slot.lock);
 }

@@ -6,20 +6,13 @@
 #include <stdbool.h>
 #include <stdint.h>
 
-#include "vision/image_io_cv.h"
+#include "app/process/frame_slot.h"
 
 struct frame_source_def {
 	const char *source; /* as capture_def.source */
 	int width, height;  /* px, wanted from a camera */
 	double fps;	    /* 1/s, pace of files; wanted from a camera */
 	double hold;	    /* s each image of a folder is shown, again and again */
-};
-
-struct frame_source_frame {
-	struct image_buffer image; /* owned by the taker's struct; reused */
-	int64_t utime;		   /* us, when it was taken */
-	int64_t seq;
-	char name[256];
 };
 
 struct frame_source_figures {
