@@ -447,6 +447,30 @@ START_TEST(a_false_white_is_left_out)
 }
 END_TEST
 
+/* It can only be played as one. */
+START_TEST(a_ball_of_unknown_colour_is_asked_for_as_a_red)
+{
+	place(2, COLOUR_UNKNOWN, 0.5, -0.2);
+	frames(MANY);
+	ck_assert(c.request.ball_count == 4 && c.request.balls[2].colour == COLOUR_RED);
+	ck_assert_str_eq((const char *)c.request.balls[2].name, "RED1");
+}
+END_TEST
+
+/* After a red that fell a colour is on, by the rules. */
+START_TEST(a_red_that_fell_makes_a_colour_the_ball_on)
+{
+	config.infinity.rules = true;
+	proposed();
+	ck_assert(c.request.target_kind == TARGET_RULES && c.request.on == ON_RED);
+	state.balls[1] = state.balls[3];
+	state.ball_count = 3;
+	shot();
+	frames(MANY);
+	ck_assert(c.request.ball_count == 3 && c.request.on == ON_COLOUR);
+}
+END_TEST
+
 START_TEST(overlaps_of_a_camera_are_settled_in_the_request)
 {
 	place(1, COLOUR_RED, 0.3, 0.2);
@@ -636,6 +660,8 @@ Suite *test_suite(void)
 	tcase_add_test(faults, a_hand_that_passes_changes_nothing);
 	tcase_add_test(faults, a_ball_taken_away_asks_anew);
 	tcase_add_test(faults, a_false_white_is_left_out);
+	tcase_add_test(faults, a_ball_of_unknown_colour_is_asked_for_as_a_red);
+	tcase_add_test(faults, a_red_that_fell_makes_a_colour_the_ball_on);
 	tcase_add_test(faults, overlaps_of_a_camera_are_settled_in_the_request);
 	tcase_add_test(faults, storms_are_survived_and_repeatable);
 	suite_add_tcase(suite, faults);

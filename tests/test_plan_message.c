@@ -459,6 +459,9 @@ START_TEST(malformed_plans_are_refused)
 	BAD(entries[0].shots[0].start_y[2], 1e6);
 	BAD(entries[0].shots[0].keyframe_first, -1);
 	BAD(entries[0].shots[0].keyframe_first, INT32_MAX);
+	/* One keyframe too many. */
+	BAD(entries[0].shots[0].keyframe_first, plan.keyframe_count - plan.entries[0].shots[0].keyframe_count + 1);
+
 	BAD(entries[0].shots[0].keyframe_count, -1);
 	BAD(entries[0].shots[0].keyframe_count, INT32_MAX);
 	BAD(keyframes[3].ball, -1);
@@ -473,6 +476,27 @@ START_TEST(malformed_plans_are_refused)
 	BAD(keyframes[3].vx, -INFINITY);
 	BAD(keyframes[3].ay, NAN);
 	free(bad);
+}
+END_TEST
+
+/* Billiard tables may have fewer pockets than a message can name. */
+START_TEST(pockets_are_those_of_the_table)
+{
+	static struct table fewer;
+	fewer = config.table;
+	fewer.pocket_count = 3;
+	plan.entry_count = 1;
+	plan.entries[0].shot_count = 1;
+	billiard_plan_shot_t *shot = &plan.entries[0].shots[0];
+	shot->potted_count = 1;
+	for (int16_t pocket = 0; pocket < 6; pocket++) {
+		shot->pocket = pocket;
+		shot->potted_pocket[0] = 0;
+		ck_assert(plan_check(&plan, &config.table) && plan_check(&plan, &fewer) == (pocket < 3));
+		shot->pocket = 0;
+		shot->potted_pocket[0] = pocket;
+		ck_assert(plan_check(&plan, &config.table) && plan_check(&plan, &fewer) == (pocket < 3));
+	}
 }
 END_TEST
 
@@ -613,6 +637,7 @@ Suite *test_suite(void)
 	tcase_add_test(out, keyframes_of_a_ball_follow_each_other);
 	tcase_add_test(out, too_many_keyframes_leave_whole_shots_out);
 	tcase_add_test(out, malformed_plans_are_refused);
+	tcase_add_test(out, pockets_are_those_of_the_table);
 	tcase_add_test(out, plans_survive_the_wire);
 	tcase_add_test(out, spoiled_plans_are_refused_or_harmless);
 	tcase_add_test(out, an_animation_is_one_shot_of_the_plan);
