@@ -39,7 +39,7 @@ static void find(vec2 pos, double look)
 
 static void step(double time)
 {
-	tracker_restart(&tracker, time);
+	tracker_look(&tracker, time, false);
 	detector.count = 0;
 }
 

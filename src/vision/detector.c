@@ -464,14 +464,28 @@ double detector_cover(const struct detector *d, vec2 px)
 	return cover_at(d, px, 0.8);
 }
 
+static void find_all(struct detector *d, const struct image *frame, const struct camera *camera)
+{
+	stage_scan(d->watch, frame, &d->scan);
+	detector_begin(d, frame, camera);
+	detector_search(d, d->scan.changed);
+	detector_settle(d);
+}
+
 bool detector_frame(struct detector *d, const struct image *frame, const struct camera *camera)
 {
 	d->count = d->refused_count = 0;
 	if (!scan_frame(&d->scan, frame))
 		return false;
-	detector_begin(d, frame, camera);
-	stage_scan(d->watch, frame, &d->scan);
-	detector_search(d, d->scan.changed);
-	detector_settle(d);
+	find_all(d, frame, camera);
+	return true;
+}
+
+bool detector_look(struct detector *d, const struct image *frame, const struct camera *camera)
+{
+	d->count = d->refused_count = 0;
+	if (!scan_again(&d->scan))
+		return false;
+	find_all(d, frame, camera);
 	return true;
 }

@@ -49,6 +49,9 @@ bool detector_place(struct detector *d, const struct camera *camera);
 /* Balls of a whole frame into d->candidate. False when no cloth is seen. */
 bool detector_frame(struct detector *d, const struct image *frame, const struct camera *camera);
 
+/* The same of a frame that scan_changes() has copied. */
+bool detector_look(struct detector *d, const struct image *frame, const struct camera *camera);
+
 /* The same in steps, for a tracked table whose scan is up to date: begin; put in what is known; look for more in the
  * active cells; settle. Candidates that are known carry the caller's tag. frame and camera are borrowed until settle. */
 void detector_begin(struct detector *d, const struct image *frame, const struct camera *camera);

@@ -47,6 +47,11 @@ void scan_finish(struct scan *scan)
 bool scan_frame(struct scan *scan, const struct image *frame)
 {
 	scan_copy(scan, frame);
+	return scan_again(scan);
+}
+
+bool scan_again(struct scan *scan)
+{
 	if (!scan_learn(scan))
 		return false;
 	for (int y = 0; y < scan->height; y++)

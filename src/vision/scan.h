@@ -32,6 +32,7 @@ struct scan {
 	uint16_t *foreign;    /* per cell: pixels that are not cloth */
 	uint16_t *half;	      /* per cell: pixels that may not be; behind foreign */
 	uint16_t *difference; /* per cell: mean absolute difference, 1/16 level */
+	int usual;	      /* the usual one of these: noise, or light that is not what it was */
 	int relearn_row;      /* of cells: the next to be learned again */
 };
 
@@ -44,6 +45,8 @@ void scan_finish(struct scan *scan);
 bool scan_place(struct scan *scan, const struct camera *camera, const struct table *table);
 /* Copies, learns the cloth, marks. False when nothing like an even cloth is seen (black, overexposed...). */
 bool scan_frame(struct scan *scan, const struct image *frame);
+/* The same of the frame that scan_changes() has copied. */
+bool scan_again(struct scan *scan);
 /* The next frame of a tracked table: copies it and finds the cells that changed (with those around them). Returns how
  * many; they are in scan->changed until the next call. */
 int scan_changes(struct scan *scan, const struct image *frame);

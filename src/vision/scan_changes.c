@@ -64,7 +64,8 @@ int scan_changes(struct scan *scan, const struct image *frame)
 	for (int cy = 0; cy < scan->cells_y; cy++)
 		for (int cx = 0; cx < scan->cells_x; cx++)
 			scan->difference[cy * scan->cells_x + cx] = cell_difference(scan, cx, cy);
-	double limit = CHANGE_FACTOR * usual_difference(scan) + CHANGE_FLOOR;
+	scan->usual = usual_difference(scan);
+	double limit = CHANGE_FACTOR * scan->usual + CHANGE_FLOOR;
 	for (int i = 0; i < cells; i++)
 		core[i] = scan->difference[i] > limit;
 	scan_dilate(scan);

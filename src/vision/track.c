@@ -4,17 +4,29 @@
 #include <string.h>
 
 enum {
-	CONFIRM_FRAMES = 3,   /* a new ball is reported when it has been seen this often */
-	LOST_FRAMES = 4,      /* a ball gone from a free place is kept this long */
-	COVERED_FRAMES = 150, /* one that something covers */
-	TURN = 8,	      /* of resting balls, every TURN-th is fitted again in each frame */
+	CONFIRM_FRAMES = 3, /* a new ball is reported when it has been seen this often */
+	LOST_FRAMES = 4,    /* a ball gone from a free place is kept this long */
+	TURN = 8,	    /* of resting balls, every TURN-th is fitted again in each frame */
 	LOOKS_MAX = 40
 };
 static const double NOISE_PX = 0.12; /* a resting ball trembles by, whatever its size in the picture */
 static const double FASTEST = 9;     /* m/s; no ball is faster */
 static const double CONFIRM_SUPPORT = 0.78, CONFIRM_BEND = 0.3; /* radii */
+static const double FIRST_SUPPORT = 0.75;			/* a first frame is believed what has that much rim */
 static const double LOOK_DISTANCE = 1.2;			/* features further apart are another ball's */
+static const double LOOK_SAME = 0.3;	 /* of a resting ball: further apart, and it is not the ball it was */
+static const double JUMP_REACH = 1.2;	 /* radii off its way: a track found further away proves its colour anew */
+static const double PLACE_REACH = 0.9;	 /* radii; nearer than that two finds at rest are one ball */
+static const double PLACE_SAME = 0.0015; /* m; further off, the ball at rest lies elsewhere than was believed */
 static const double COVERED_SHARE = 0.35;
+static const double POCKET_REACH = 1.0; /* radii beyond a pocket's circle: what is dark there is the pocket */
+enum {
+	LOOKS_SURE = 2,	  /* whole looks that make a ball which is clearly seen */
+	LOOKS_UNSURE = 4, /* one that is not */
+	LOOKS_ABSENT = 2, /* whole looks without it that end one */
+	HURRY_MAX = 6	  /* in each frame; then it takes time */
+};
+static const double LOOK_INTERVAL = 0.9, LOOK_DOUBT = 0.2; /* s between whole looks, all being well and not */
 
 void tracker_init(struct tracker *t, struct detector *detector)
 {
@@ -47,12 +59,17 @@ static bool moves_like_a_ball(const struct tracker *t, const struct track *k)
 	       vec2_norm(bend) < CONFIRM_BEND * t->detector->table->ball_radius;
 }
 
+static void notice(const struct tracker *t, struct track *k)
+{
+	k->age++;
+	k->misses = k->absent = 0;
+	k->seen_time = t->time;
+}
+
 static void update(struct tracker *t, struct track *k, const struct sighting *c)
 {
 	double noise = NOISE_PX * t->detector->table->ball_radius / c->fit.outline.radius_px;
-	k->age++;
-	k->misses = 0;
-	k->seen_time = t->time;
+	notice(t, k);
 	if (c->fixed)
 		return;
 	k->seen = *c;
@@ -69,6 +86,7 @@ static void start(struct tracker *t, const struct sighting *c, bool confirmed)
 			continue;
 		*k = (struct track){.id = t->next_id++,
 				    .age = 1,
+				    .looked = 1,
 				    .seen_time = t->time,
 				    .confirmed = confirmed,
 				    .seen = *c,
@@ -78,13 +96,41 @@ static void start(struct tracker *t, const struct sighting *c, bool confirmed)
 	}
 }
 
+/* Within a pocket's dark mouth. */
+static bool is_at_pocket(const struct table *table, vec2 pos)
+{
+	for (int i = 0; i < table->pocket_count; i++)
+		if (vec2_dist(pos, table->pocket[i].centre) <
+		    table->pocket[i].radius + POCKET_REACH * table->ball_radius)
+			return true;
+	return false;
+}
+
+/* Something lies over its place that is neither another ball nor a pocket. */
+static bool is_hidden(const struct tracker *t, const struct track *k)
+{
+	const struct detector *d = t->detector;
+	for (int j = 0; j < d->count; j++)
+		if (vec2_dist(d->candidate[j].fit.pos, k->steady.pos) < 2 * PLACE_REACH * d->table->ball_radius)
+			return false;
+	return !is_at_pocket(d->table, k->steady.pos) && detector_cover(d, k->seen.fit.outline.centre) > COVERED_SHARE;
+}
+
+static void drop(struct tracker *t, struct track *k)
+{
+	t->judged = t->judged && !k->confirmed;
+	*k = (struct track){0};
+}
+
 static void miss(struct tracker *t, struct track *k)
 {
 	k->age++;
 	k->misses++;
-	bool covered = detector_cover(t->detector, k->seen.fit.outline.centre) > COVERED_SHARE;
-	if (!k->confirmed || k->misses > (covered && !k->steady.moving ? COVERED_FRAMES : LOST_FRAMES))
-		*k = (struct track){0};
+	k->looked = 0;
+	if (k->confirmed && !k->steady.moving && is_hidden(t, k))
+		return;
+	if (!k->confirmed || k->misses > LOST_FRAMES)
+		drop(t, k);
 }
 
 /* ---- matching
@@ -107,6 +153,14 @@ static double mismatch(const struct tracker *t, const struct track *k, const str
 	return far < reach && other < LOOK_DISTANCE ? far / reach + 0.5 * other / LOOK_DISTANCE : INFINITY;
 }
 
+/* The place of a ball that is somewhere else than where it should be is its own; its colour it must prove anew. */
+static void take(struct tracker *t, struct track *k, const struct sighting *c)
+{
+	if (vec2_dist(predicted(k, t->time), c->fit.pos) > JUMP_REACH * t->detector->table->ball_radius)
+		k->looks = 0;
+	update(t, k, c);
+}
+
 /* Best pair first, until none is left. */
 static void match_new(struct tracker *t, bool found[TRACK_MAX], bool taken[DETECT_MAX])
 {
@@ -126,11 +180,11 @@ static void match_new(struct tracker *t, bool found[TRACK_MAX], bool taken[DETEC
 		if (!isfinite(best))
 			return;
 		found[bi] = taken[bj] = true;
-		update(t, &t->track[bi], &d->candidate[bj]);
+		take(t, &t->track[bi], &d->candidate[bj]);
 	}
 }
 
-static void take_over(struct tracker *t, bool confirmed)
+static void take_over(struct tracker *t)
 {
 	struct detector *d = t->detector;
 	bool found[TRACK_MAX] = {false}, taken[DETECT_MAX] = {false};
@@ -147,21 +201,137 @@ static void take_over(struct tracker *t, bool confirmed)
 			miss(t, &t->track[i]);
 	for (int j = 0; j < d->count; j++)
 		if (!taken[j])
-			start(t, &d->candidate[j], confirmed);
+			start(t, &d->candidate[j], false);
 }
 
-/* ---- frames
- * ---------------------------------------------------------------------------------------------------------- */
+/* ---- whole looks
+ * ------------------------------------------------------------------------------------------------------ */
 
-void tracker_restart(struct tracker *t, double time)
+static bool is_sure(const struct sighting *c)
+{
+	return c->confidence >= TRACK_SURE;
+}
+
+/* A resting ball and what the frame shows in its place: where they differ the frame is right, if it is clear. */
+static void believe(struct tracker *t, struct track *k, const struct sighting *c)
+{
+	bool elsewhere = vec2_dist(k->steady.pos, c->fit.pos) > PLACE_SAME;
+	k->looked++;
+	k->disputed = elsewhere && !is_sure(c);
+	if (k->disputed) {
+		notice(t, k);
+		t->judged = false;
+		return;
+	}
+	if (colour_difference(&k->look, &c->look) > LOOK_SAME)
+		k->looks = 0;
+	if (elsewhere)
+		k->steady = stabilise_begin(c->fit.pos, t->time);
+	update(t, k, c);
+	if (!k->confirmed && k->looked < (is_sure(c) ? LOOKS_SURE : LOOKS_UNSURE))
+		t->judged = false;
+	else
+		k->confirmed = true;
+}
+
+/* Nearest first, within a ball's place. */
+static void match_places(struct tracker *t, bool found[TRACK_MAX], bool taken[DETECT_MAX])
+{
+	struct detector *d = t->detector;
+	for (;;) {
+		double best = PLACE_REACH * d->table->ball_radius;
+		int bi = -1, bj = 0;
+		for (int i = 0; i < TRACK_MAX; i++)
+			for (int j = 0; j < d->count && t->track[i].id != 0 && !found[i]; j++) {
+				double far = vec2_dist(t->track[i].steady.pos, d->candidate[j].fit.pos);
+				if (!taken[j] && far < best) {
+					best = far;
+					bi = i;
+					bj = j;
+				}
+			}
+		if (bi < 0)
+			return;
+		found[bi] = taken[bj] = true;
+		believe(t, &t->track[bi], &d->candidate[bj]);
+	}
+}
+
+/* Nothing there: it is hidden, or after another look gone. */
+static void doubt(struct tracker *t, struct track *k)
+{
+	k->age++;
+	k->misses++;
+	k->looked = 0;
+	if (k->confirmed && is_hidden(t, k))
+		return;
+	t->judged = false;
+	if (!k->confirmed || ++k->absent >= LOOKS_ABSENT)
+		drop(t, k);
+}
+
+static void judge(struct tracker *t)
+{
+	struct detector *d = t->detector;
+	bool found[TRACK_MAX] = {false}, taken[DETECT_MAX] = {false};
+	t->judged = true;
+	match_places(t, found, taken);
+	for (int i = 0; i < TRACK_MAX; i++)
+		if (t->track[i].id != 0 && !found[i])
+			doubt(t, &t->track[i]);
+	for (int j = 0; j < d->count; j++)
+		if (!taken[j]) {
+			start(t, &d->candidate[j], false);
+			t->judged = false;
+		}
+}
+
+/* A first frame is all there is to believe; but what has little rim may be part of an arm. */
+static void begin(struct tracker *t)
+{
+	struct detector *d = t->detector;
+	for (int j = 0; j < d->count; j++)
+		start(t, &d->candidate[j], d->candidate[j].fit.support >= FIRST_SUPPORT);
+}
+
+void tracker_look(struct tracker *t, double time, bool resting)
 {
 	bool first = true;
 	for (int i = 0; i < TRACK_MAX; i++)
 		first = first && t->track[i].id == 0;
-	t->time = time;
+	t->time = t->look_time = time;
 	t->fitted = t->detector->count;
-	take_over(t, first);
+	t->judged = false;
+	if (first)
+		begin(t);
+	else if (resting)
+		judge(t);
+	else
+		take_over(t);
+	t->hurry = t->judged || !resting ? 0 : t->hurry + 1;
 }
+
+bool tracker_wants_look(const struct tracker *t, double time, bool worried)
+{
+	if (!t->judged && t->hurry < HURRY_MAX)
+		return true;
+	for (int i = 0; i < TRACK_MAX && !worried; i++) {
+		const struct track *k = &t->track[i];
+		worried = k->id != 0 && (k->misses > 0 || k->disputed || !is_sure(&k->seen));
+	}
+	return time - t->look_time > (worried || !t->judged ? LOOK_DOUBT : LOOK_INTERVAL);
+}
+
+bool tracker_moves(const struct tracker *t)
+{
+	for (int i = 0; i < TRACK_MAX; i++)
+		if (t->track[i].id != 0 && t->track[i].confirmed && t->track[i].steady.moving)
+			return true;
+	return false;
+}
+
+/* ---- frames
+ * ---------------------------------------------------------------------------------------------------------- */
 
 /* A cell that its outline reaches into has changed. */
 static bool is_disturbed(const struct scan *s, const struct fit *fit)
@@ -210,5 +380,9 @@ void tracker_step(struct tracker *t, const struct image *frame, const struct cam
 		t->fitted += fit[i] && follow(t, i);
 	detector_search(t->detector, t->detector->scan.changed);
 	detector_settle(t->detector);
-	take_over(t, false);
+	take_over(t);
+	if (tracker_moves(t)) {
+		t->judged = false;
+		t->hurry = 0;
+	}
 }

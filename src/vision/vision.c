@@ -15,6 +15,10 @@
 static const double OCCLUDED_CELLS = 2.5; /* cells full of something that is no ball: more than a stain */
 static const double OCCLUDED_SHARE = 0.2; /* of a cell; less is lines and the edge of the bed */
 static const double BUMP_SHARE = 0.5;	  /* of all cells changed at once: the camera may have been bumped */
+static const double CERTAIN = 0.9;	  /* of a colour, from which on it is believed */
+static const double GAP = 0.1;		  /* s without a frame: what moves may be anywhere */
+static const double LIGHT_FACTOR = 2, LIGHT_FLOOR = 24; /* all cells differ by that much: other light; 1/16 level */
+enum { STILL_FRAMES = 3 };				/* without movement until the table rests */
 
 struct vision {
 	struct vision_def def;
@@ -26,6 +30,9 @@ struct vision {
 	bool tracking;	   /* the detector's scan is that of the stream's last frame */
 	int width, height; /* px of the stream */
 	double time;
+	int still;	  /* frames in a row in which nothing moved */
+	int noise;	  /* usual difference of the cells right after a whole look, 1/16 level; -1 not known */
+	bool cue_missing; /* in the last frame */
 };
 
 struct vision_def vision_def_default(void)
@@ -110,6 +117,7 @@ void vision_reset(struct vision *vision)
 	tracker_forget(&vision->tracker);
 	calibration_reset(&vision->stream);
 	vision->tracking = false;
+	vision->still = 0;
 }
 
 void vision_watch(struct vision *vision, const struct stage_watch *watch)
@@ -160,8 +168,26 @@ static void assign_colours(const struct vision *v, const struct colour_feature *
 		verdict[i] = (struct colour_verdict){COLOUR_UNKNOWN, 1};
 	if (v->has_colours)
 		colour_assign(&v->colours, look, out->ball_count, verdict);
-	for (int i = 0; i < out->ball_count; i++)
+	for (int i = 0; i < out->ball_count; i++) {
 		out->ball[i].colour = verdict[i].colour;
+		out->ball[i].certainty = verdict[i].confidence;
+	}
+}
+
+/* What is in doubt, ball by ball and for the whole table. */
+static void report_doubt(struct vision_result *r, bool judged)
+{
+	bool cue = false;
+	r->doubt = judged ? 0 : DOUBT_UNJUDGED;
+	for (int i = 0; i < r->ball_count; i++) {
+		struct vision_ball *b = &r->ball[i];
+		cue = cue || b->colour == COLOUR_WHITE;
+		b->doubt |= b->confidence < TRACK_SURE ? DOUBT_PLACE : 0;
+		b->doubt |= b->colour == COLOUR_UNKNOWN || b->certainty < CERTAIN ? DOUBT_COLOUR : 0;
+		b->confidence *= b->certainty;
+		r->doubt |= b->doubt;
+	}
+	r->doubt |= cue ? 0 : DOUBT_NO_CUE;
 }
 
 static struct vision_ball ball_of(const struct sighting *c)
@@ -244,6 +270,7 @@ static void report_single(const struct vision *v, struct vision_result *r)
 		r->ball_count++;
 	}
 	assign_colours(v, look, r);
+	report_doubt(r, true);
 	r->occluded = is_occluded(v, r);
 }
 
@@ -273,7 +300,7 @@ int vision_detect(struct vision *vision, const struct image *frame, struct visio
 /* ---- streams
  * --------------------------------------------------------------------------------------------------------- */
 
-static void report_tracks(const struct vision *v, struct vision_result *r)
+static void report_tracks(struct vision *v, struct vision_result *r)
 {
 	struct colour_feature look[VISION_BALL_MAX];
 	for (int i = 0; i < TRACK_MAX; i++) {
@@ -287,23 +314,48 @@ static void report_tracks(const struct vision *v, struct vision_result *r)
 		camera_project(&r->camera, b->pos, v->def.table->ball_radius, &b->px);
 		b->track = k->id;
 		b->age = k->age;
-		if (k->misses > 0)
+		b->doubt = k->disputed ? DOUBT_PLACE : 0;
+		if (k->misses > 0) {
 			b->confidence *= 0.5;
+			b->doubt |= DOUBT_HIDDEN;
+		}
 		look[r->ball_count++] = k->look;
 	}
 	assign_colours(v, look, r);
+	report_doubt(r, v->tracker.judged);
+	v->cue_missing = (r->doubt & DOUBT_NO_CUE) != 0;
 	r->occluded = is_occluded(v, r);
+}
+
+static bool is_resting(const struct vision *v)
+{
+	return v->still >= STILL_FRAMES;
+}
+
+static void take_look(struct vision *v, double time, struct vision_result *r)
+{
+	tracker_look(&v->tracker, time, !tracker_moves(&v->tracker));
+	v->tracking = true;
+	v->noise = -1;
+	report_tracks(v, r);
 }
 
 /* The whole frame: at the start, after a bump, after a single frame in between. */
 static void step_whole(struct vision *v, const struct image *frame, double time, struct vision_result *r)
 {
 	v->tracking = false;
-	if (!search_whole(v, frame, r))
-		return;
-	tracker_restart(&v->tracker, time);
-	v->tracking = true;
-	report_tracks(v, r);
+	if (search_whole(v, frame, r))
+		take_look(v, time, r);
+}
+
+/* The whole frame in the same place, which scan_changes() has copied. */
+static void step_look(struct vision *v, const struct image *frame, double time, struct vision_result *r)
+{
+	v->tracking = false;
+	if (detector_look(&v->detector, frame, &r->camera))
+		take_look(v, time, r);
+	else
+		fail_frame(r, "no cloth is seen: too dark or too bright");
 }
 
 static void step_changes(struct vision *v, const struct image *frame, double time, struct vision_result *r)
@@ -315,6 +367,34 @@ static void step_changes(struct vision *v, const struct image *frame, double tim
 	report_tracks(v, r);
 }
 
+/* Light that changes everywhere makes no cell differ from the others. */
+static bool light_changed(struct vision *v)
+{
+	int usual = v->detector.scan.usual;
+	if (v->noise < 0)
+		v->noise = usual;
+	return usual > LIGHT_FACTOR * v->noise + LIGHT_FLOOR;
+}
+
+/* Look at the whole frame rather than at what changed in it? gap: s since the last one; changed: cells. */
+static bool wants_look(struct vision *v, double gap, int changed)
+{
+	v->still = changed == 0 || !tracker_moves(&v->tracker) ? v->still + (v->still < STILL_FRAMES) : 0;
+	bool light = light_changed(v);
+	if (gap > GAP && !is_resting(v))
+		return true;
+	return light || (is_resting(v) && tracker_wants_look(&v->tracker, v->time, v->cue_missing));
+}
+
+static void begin_frame(struct vision *v, const struct image *frame, double time)
+{
+	if (time < v->time || frame->width != v->width || frame->height != v->height)
+		vision_reset(v);
+	v->time = time;
+	v->width = frame->width;
+	v->height = frame->height;
+}
+
 int vision_track(struct vision *vision, const struct image *frame, double time, struct vision_result *out, char *err,
 		 size_t err_size)
 {
@@ -323,27 +403,28 @@ int vision_track(struct vision *vision, const struct image *frame, double time, 
 	int rc = check_frame(vision, frame, &r.camera.in, err, err_size);
 	if (rc < 0)
 		return rc;
-	if (time < vision->time || frame->width != vision->width || frame->height != vision->height)
-		vision_reset(vision);
-	vision->time = time;
-	vision->width = frame->width;
-	vision->height = frame->height;
-	bool urgent = vision->tracking && scan_changes(s, frame) > BUMP_SHARE * s->cells_x * s->cells_y;
+	double gap = time - vision->time;
+	begin_frame(vision, frame, time);
+	int changed = vision->tracking ? scan_changes(s, frame) : 0;
+	bool urgent = changed > BUMP_SHARE * s->cells_x * s->cells_y;
 	enum calibration_news news =
 		calibration_track(&vision->stream, frame, &r.camera.in, time, urgent, r.reason, sizeof(r.reason));
 	if (news == CALIBRATION_LOST) {
 		r.markers_seen = vision->stream.now_count;
 		vision->tracking = false;
-	} else {
-		/* What became of a search does not matter while a pose holds. */
-		r.reason[0] = '\0';
-		report_calibration(&vision->stream, &r);
-		r.pose_age = time - vision->stream.found;
-		if (news == CALIBRATION_MOVED || !vision->tracking)
-			step_whole(vision, frame, time, &r);
-		else
-			step_changes(vision, frame, time, &r);
+		*out = r;
+		return 0;
 	}
+	/* What became of a search does not matter while a pose holds. */
+	r.reason[0] = '\0';
+	report_calibration(&vision->stream, &r);
+	r.pose_age = time - vision->stream.found;
+	if (news == CALIBRATION_MOVED || !vision->tracking)
+		step_whole(vision, frame, time, &r);
+	else if (wants_look(vision, gap, changed))
+		step_look(vision, frame, time, &r);
+	else
+		step_changes(vision, frame, time, &r);
 	*out = r;
 	return 0;
 }

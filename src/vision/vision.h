@@ -36,12 +36,23 @@ struct vision_def vision_def_default(void);
 
 enum vision_calibration { CALIBRATION_NONE, CALIBRATION_FRESH, CALIBRATION_KEPT };
 
+/* What is not sure of a ball, or of the whole table. */
+enum vision_doubt {
+	DOUBT_PLACE = 1,    /* too little of it is seen, or whole frame and track differ */
+	DOUBT_COLOUR = 2,   /* it may be of another colour, or is of none that is known */
+	DOUBT_HIDDEN = 4,   /* believed to lie there, not seen in this frame */
+	DOUBT_UNJUDGED = 8, /* nobody has looked at the whole frame since something moved, came or went */
+	DOUBT_NO_CUE = 16   /* no white ball */
+};
+
 struct vision_ball {
 	vec2 pos; /* m, table frame, centre; stabilised when tracked */
 	vec2 vel; /* m/s; 0 from a single frame */
 	vec2 px;  /* image of the centre, pixels of the frame */
 	enum ball_colour colour;
-	double confidence;  /* 0..1 */
+	double confidence;  /* 0..1: of the place times of the colour */
+	double certainty;   /* 0..1: of the colour alone */
+	int doubt;	    /* of enum vision_doubt */
 	int track;	    /* identity over frames, >= 1; 0 from a single frame */
 	int age;	    /* frames it has been tracked */
 	double radius_px;   /* fitted outline, mean */
@@ -56,6 +67,7 @@ struct vision_result {
 	double residual_px, residual; /* rms of the marker corners: px, m on the table */
 	struct camera camera;	      /* valid unless CALIBRATION_NONE */
 	bool occluded;		      /* a hand, arm, cue or head is in the picture */
+	int doubt;		      /* of enum vision_doubt: all balls', and the table's own */
 	int ball_count;
 	struct vision_ball ball[VISION_BALL_MAX];
 };
