@@ -6,7 +6,7 @@
 enum {
 	CONFIRM_FRAMES = 3, /* a new ball is reported when it has been seen this often */
 	LOST_FRAMES = 4,    /* a ball gone from a free place is kept this long */
-	TURN = 8,	    /* of resting balls, every TURN-th is fitted again in each frame */
+	TURN = 12,	    /* of resting balls, every TURN-th is fitted again in each frame */
 	LOOKS_MAX = 40
 };
 static const double NOISE_PX = 0.12; /* a resting ball trembles by, whatever its size in the picture */
