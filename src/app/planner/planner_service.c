@@ -12,9 +12,7 @@
 #include "app/process/text.h"
 #include "app/process/clock.h"
 #include "app/planner/request_message.h"
-#include "app/process/bus.h"
 #include "app/planner/plan_message.h"
-#include "app/process/process.h"
 
 static const double IMPROVEMENT_PERIOD = 0.1; /* s between improved answers at least */
 static const double OUTDATED = 2;	      /* s after the last answer within which an older request is a late one */
