@@ -5,15 +5,17 @@
 #include "app/commands/cmd.h"
 #include "app/commands/cmd_judge.h"
 
-static const double KEEP = 5, KEEP_MAX = 60;	/* s */
+static const double KEEP = 5, KEEP_MAX = 60;	 /* s */
 static const double SECONDS_MAX = 7 * 24 * 3600; /* s */
 
 static void help(void)
 {
-	puts("usage: billiard judge [-c CONF] [--json] [--out DIR] [--keep S] (LOG... | --live [--bus URL] [--seconds S])\n"
+	puts("usage: billiard judge [-c CONF] [--json] [--out DIR] [--keep S] (LOG... | --live [--bus URL] [--seconds "
+	     "S])\n"
 	     "       billiard judge [-c CONF] [--json] --replay LOG...\n"
 	     "Compares TABLE_STATE, PLAN_REQUEST, PLAN and DRAW with TRUTH over whole runs, from LCM logs or from the\n"
-	     "bus until Ctrl-C; wrong rests leave replays of S seconds (5) in DIR. --replay plays the CAMERA messages of\n"
+	     "bus until Ctrl-C; wrong rests leave replays of S seconds (5) in DIR. --replay plays the CAMERA messages "
+	     "of\n"
 	     "each log to a fresh billiard-vision and compares what it sees at the end with the last TRUTH.");
 }
 
@@ -52,12 +54,16 @@ static int take(struct judge_options *o, int c)
 /* CMD_OK; CMD_BAD_INPUT after a message; -1 when help was given. */
 static int parse(struct judge_options *o, int argc, char **argv)
 {
-	static const struct option table[] = {
-		{"config", required_argument, NULL, 'c'},	   {"live", no_argument, NULL, OPTION_LIVE},
-		{"replay", no_argument, NULL, OPTION_REPLAY},	   {"json", no_argument, NULL, OPTION_JSON},
-		{"out", required_argument, NULL, OPTION_OUT},	   {"keep", required_argument, NULL, OPTION_KEEP},
-		{"seconds", required_argument, NULL, OPTION_SECONDS}, {"bus", required_argument, NULL, OPTION_BUS},
-		{"help", no_argument, NULL, 'h'},		   {NULL, 0, NULL, 0}};
+	static const struct option table[] = {{"config", required_argument, NULL, 'c'},
+					      {"live", no_argument, NULL, OPTION_LIVE},
+					      {"replay", no_argument, NULL, OPTION_REPLAY},
+					      {"json", no_argument, NULL, OPTION_JSON},
+					      {"out", required_argument, NULL, OPTION_OUT},
+					      {"keep", required_argument, NULL, OPTION_KEEP},
+					      {"seconds", required_argument, NULL, OPTION_SECONDS},
+					      {"bus", required_argument, NULL, OPTION_BUS},
+					      {"help", no_argument, NULL, 'h'},
+					      {NULL, 0, NULL, 0}};
 	*o = (struct judge_options){.keep = KEEP};
 	int c;
 	while ((c = getopt_long(argc, argv, "c:h", table, NULL)) != -1) {

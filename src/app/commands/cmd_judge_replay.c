@@ -226,8 +226,12 @@ static int judge_one(const struct config *config, const struct judge_options *op
 	if (check_log(path, err, sizeof err) < 0)
 		return cmd_bad_input("%s", err);
 	int code = bus_open(&r.bus, url, err, sizeof err), status = CMD_FAILED;
-	code = code < 0 ? code : bus_subscribe(r.bus, &(struct bus_subscription){"TABLE_STATE", &bus_table_state, BUS_EACH, on_state, &r});
-	code = code < 0 ? code : bus_subscribe(r.bus, &(struct bus_subscription){"STATUS", &bus_status, BUS_EACH, on_status, &r});
+	code = code < 0 ? code
+			: bus_subscribe(r.bus, &(struct bus_subscription){"TABLE_STATE", &bus_table_state, BUS_EACH,
+									  on_state, &r});
+	code = code < 0 ? code
+			: bus_subscribe(r.bus,
+					&(struct bus_subscription){"STATUS", &bus_status, BUS_EACH, on_status, &r});
 	code = code < 0 ? code : start_vision(&r, config, url, err, sizeof err);
 	if (code == 0) {
 		code = play_log(&r, path, err, sizeof err);
