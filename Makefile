@@ -34,9 +34,6 @@ APP_COMMANDS := cmd cmd_calibrate cmd_demo cmd_detect cmd_plan cmd_run cmd_simul
 APP_PROCESS += event_log private_bus
 APP_VIRTUAL += judge_match
 APP_COMMANDS += cmd_judge cmd_judge_replay
-APP := $(addprefix process/,$(APP_PROCESS)) $(addprefix config/,$(APP_CONFIG)) $(addprefix control/,$(APP_CONTROL)) \
-	$(addprefix light/,$(APP_LIGHT)) $(addprefix planner/,$(APP_PLANNER)) $(addprefix virtual/,$(APP_VIRTUAL)) \
-	$(addprefix commands/,$(APP_COMMANDS))
 # programs: src/app/programs/main_NAME.c becomes build/NAME
 PROGRAMS := billiard billiard-vision billiard-planner billiard-infinity billiard-projector billiard-table
 # tests/test_NAME.c each; tests/NAME.c shared by them
@@ -45,10 +42,13 @@ TESTS := signature message_check animation fsm stability plan_message controller
 	rules cost geometry frontier pool scheme candidate plan plan_thesis plan_hard plan_complete tolerance refine solutions request \
 	ball bed contact predict event inverse model motion queue roots sim sim_hard table trace \
 	calibration camera pose scan fit colour stabilise image_io capture stages track vision vision_photos
+TESTS += shipped
 TEST_SHARED := harness brute_force bus_fixture service_fixture planner_client random poly_judge scenes search_scenes shot_compare thesis_lists vision_rig vision_scene
 TESTS += event_log judge_match
 # tests that are scripts: tests/NAME.sh, called with the build folder
 TEST_SCRIPTS := cli demo planner units
+# tests/NAME.c: programs of their own that a test script compiles
+TEST_CLIENTS := outside_client
 # bench/bench_NAME.c each; bench/NAME.c shared by them
 BENCHES := physics accuracy planner planner_bus search vision
 # bench/eval_NAME.c each: accuracy on recorded data
@@ -64,11 +64,15 @@ LCM_TYPES := animation_t ball_t command_t draw_list_t draw_item_t image_t keyfra
 
 WARN := -Wall -Wextra -Wpedantic -Wshadow -Wconversion -Werror
 WARN_C := -Wstrict-prototypes -Wmissing-prototypes
-# -ffp-contract=off: the same bits on every machine and optimisation level.
-BASE := $(OPT) -g -ffp-contract=off -fno-math-errno $(if $(SAN),-fsanitize=$(SAN) -fno-sanitize-recover=all -fno-omit-frame-pointer) \
-	-D_GNU_SOURCE -Isrc -I$(BUILD) -MMD -MP
-CFLAGS_ALL = -std=c17 $(BASE) $(WARN) $(WARN_C) $(CFLAGS)
-CXXFLAGS_ALL = -std=c++17 $(BASE) $(WARN) $(CXXFLAGS)
+SANITIZE := $(if $(SAN),-fsanitize=$(SAN) -fno-sanitize-recover=all -fno-omit-frame-pointer)
+# The same bits on every machine, at every optimisation level, and in whatever folder this is built. Comes after the caller's flags.
+SAME_BITS = -ffp-contract=off -fno-math-errno -ffile-prefix-map=$(CURDIR)=. -ffile-prefix-map=$(abspath $(BUILD))=build
+BASE = $(OPT) -g $(SANITIZE) -D_GNU_SOURCE -Isrc -I$(BUILD) -MD -MP $(CPPFLAGS)
+CFLAGS_ALL = -std=c17 $(BASE) $(WARN) $(WARN_C) $(CFLAGS) $(SAME_BITS)
+CXXFLAGS_ALL = -std=c++17 $(BASE) $(WARN) $(CXXFLAGS) $(SAME_BITS)
+LINK_FLAGS = $(OPT) -g $(SANITIZE) $(LDFLAGS) -Wl,--as-needed
+# Pixel loops: -O3 makes vectors of them (the same bits: contraction stays off).
+VISION_CFLAGS := $(if $(filter -O2,$(OPT)),-O3)
 
 # pkg-config runs once, when the first file is compiled: on a bare machine the packages come first.
 APP_PKGS := lcm glib-2.0 libconfig jansson cairo sdl2 libsystemd
@@ -80,149 +84,195 @@ APP_LIBS = $(eval APP_LIBS := $$(shell pkg-config --libs $(APP_PKGS)))$(APP_LIBS
 TEST_LIBS = $(eval TEST_LIBS := $$(shell pkg-config --libs check gsl))$(TEST_LIBS)
 LIBS = $(CV_LIBS) $(APP_LIBS) -lm -lpthread
 
-# ---- objects ---------------------------------------------------------------------------------------------------------
+# V=1 shows the commands, otherwise a short line each.
+V ?=
+say = $(if $(filter 1,$(V)),,@echo '$(1) $(2)';)
+
+# ---- what is built ---------------------------------------------------------------------------------------------------
 
 obj = $(patsubst %,$(BUILD)/$(1)/%.o,$(2))
-PHYSICS_O := $(call obj,src/physics,$(PHYSICS))
-SEARCH_O := $(call obj,src/search,$(SEARCH))
-VISION_O := $(call obj,src/vision,$(VISION)) $(call obj,src/vision,$(VISION_CV))
-APP_O := $(call obj,src/app,$(APP))
-LCM_O := $(patsubst %,$(BUILD)/lcmtypes/billiard_%.o,$(LCM_TYPES))
-TEST_SHARED_O := $(call obj,tests,$(TEST_SHARED))
-ARCHIVES := $(BUILD)/libapp.a $(BUILD)/liblcmtypes.a $(BUILD)/libsearch.a $(BUILD)/libvision.a $(BUILD)/libphysics.a
 PROGRAM_BINS := $(addprefix $(BUILD)/,$(PROGRAMS))
+PROGRAM_O := $(call obj,src/app/programs,$(addprefix main_,$(PROGRAMS)))
+LCM_O := $(call obj,lcmtypes,$(addprefix billiard_,$(LCM_TYPES)))
+LCM_H := $(LCM_O:.o=.h)
+# One archive a room. The order is that of linking: each needs only what stands behind it.
+APP_ROOMS := commands control light virtual planner process config
+ROOMS := $(addprefix app-,$(APP_ROOMS)) lcmtypes search vision physics
+OBJECTS_app-commands := $(call obj,src/app/commands,$(APP_COMMANDS))
+OBJECTS_app-control := $(call obj,src/app/control,$(APP_CONTROL))
+OBJECTS_app-light := $(call obj,src/app/light,$(APP_LIGHT))
+OBJECTS_app-virtual := $(call obj,src/app/virtual,$(APP_VIRTUAL))
+OBJECTS_app-planner := $(call obj,src/app/planner,$(APP_PLANNER))
+OBJECTS_app-process := $(call obj,src/app/process,$(APP_PROCESS))
+OBJECTS_app-config := $(call obj,src/app/config,$(APP_CONFIG))
+OBJECTS_lcmtypes := $(LCM_O)
+OBJECTS_search := $(call obj,src/search,$(SEARCH))
+OBJECTS_vision := $(call obj,src/vision,$(VISION) $(VISION_CV))
+OBJECTS_physics := $(call obj,src/physics,$(PHYSICS))
+OBJECTS_tests := $(call obj,tests,$(TEST_SHARED))
+OBJECTS_bench := $(call obj,bench,$(BENCH_SHARED))
+archive = $(patsubst %,$(BUILD)/lib%.a,$(1))
+ARCHIVES := $(call archive,$(ROOMS))
+TEST_ARCHIVE := $(call archive,tests)
+BENCH_ARCHIVE := $(call archive,bench)
 TEST_BINS := $(patsubst %,$(BUILD)/tests/test_%,$(TESTS))
 FUZZ_BINS := $(patsubst %,$(BUILD)/fuzz_%,$(FUZZERS))
-BENCH_SHARED_O := $(call obj,bench,$(BENCH_SHARED)) $(call obj,tests,brute_force bus_fixture planner_client random scenes search_scenes shot_compare thesis_lists)
 EVAL_BINS := $(patsubst %,$(BUILD)/bench/eval_%,$(EVALS))
 BENCH_BINS := $(patsubst %,$(BUILD)/bench/bench_%,$(BENCHES))
+TEST_O := $(call obj,tests,$(addprefix test_,$(TESTS)))
+BENCH_O := $(call obj,bench,$(addprefix bench_,$(BENCHES)) $(addprefix eval_,$(EVALS)))
+FUZZ_O := $(call obj,fuzz,$(addprefix fuzz_,$(FUZZERS)))
+ROOM_O := $(foreach room,$(ROOMS),$(OBJECTS_$(room)))
+ALL_O := $(ROOM_O) $(PROGRAM_O) $(OBJECTS_tests) $(OBJECTS_bench) $(TEST_O) $(BENCH_O) $(FUZZ_O)
 
-.PHONY: FORCE all demo check check-built bench eval fuzz fuzzers headers lint signatures install clean setup tests programs
+.PHONY: FORCE all help demo check check-built bench docs-pictures eval fuzz fuzzers headers lists lint signatures generated install clean setup tests programs
 .SECONDARY:
 .DELETE_ON_ERROR:
 
 all: programs
 programs: $(PROGRAM_BINS)
+generated: $(LCM_H)
 tests: $(TEST_BINS)
 
-$(BUILD)/libphysics.a: $(PHYSICS_O)
-$(BUILD)/libsearch.a: $(SEARCH_O)
-$(BUILD)/libvision.a: $(VISION_O)
-$(BUILD)/libapp.a: $(APP_O)
-$(BUILD)/liblcmtypes.a: $(LCM_O)
-# A changed list of sources changes the archives.
-$(ARCHIVES): Makefile
-$(BUILD)/lib%.a:
-	@rm -f $@ && $(AR) rcsD $@ $(filter %.o,$^)
+# ---- flags and lists rebuild what they reach -------------------------------------------------------------------------
+
+# A file with what was used last, written anew only when that is something else: what depends on it is rebuilt then.
+quoted = '$(subst ','\'',$(1))'
+$(BUILD)/flags/%: FORCE
+	@mkdir -p $(@D)
+	@printf '%s\n' $(call quoted,$(TEXT)) | cmp -s - $@ || printf '%s\n' $(call quoted,$(TEXT)) >$@
+FORCE:
+version = $(shell $(1) --version 2>/dev/null | head -n 1)
+$(BUILD)/flags/cc: TEXT = $(CC) $(call version,$(CC)) $(CFLAGS_ALL) $(APP_CFLAGS) $(VISION_CFLAGS)
+$(BUILD)/flags/cxx: TEXT = $(CXX) $(call version,$(CXX)) $(CXXFLAGS_ALL) $(CV_CFLAGS)
+$(BUILD)/flags/link: TEXT = $(CXX) $(call version,$(CXX)) $(LINK_FLAGS) $(TEST_LIBS) $(LIBS)
+$(BUILD)/flags/data: TEXT = $(DATA)
+$(BUILD)/flags/sysconfdir: TEXT = $(SYSCONFDIR)
+$(foreach room,$(ROOMS) tests bench,$(eval $(BUILD)/flags/lib$(room): TEXT = $(OBJECTS_$(room))))
+
+$(filter-out %_cv.o,$(ALL_O)): $(BUILD)/flags/cc
+$(filter %_cv.o,$(ALL_O)): $(BUILD)/flags/cxx
+$(OBJECTS_tests) $(TEST_O) $(OBJECTS_bench) $(BENCH_O): $(BUILD)/flags/data
+$(BUILD)/src/app/config/config.o: $(BUILD)/flags/sysconfdir
+
+# ---- compile ---------------------------------------------------------------------------------------------------------
 
 $(BUILD)/src/%.o: src/%.c
 	@mkdir -p $(@D)
-	$(CC) $(CFLAGS_ALL) $(MODULE_CFLAGS) -c $< -o $@
+	$(call say,CC,$<)$(CC) $(CFLAGS_ALL) $(ROOM_CFLAGS) -c $< -o $@
 $(BUILD)/src/%.o: src/%.cc
 	@mkdir -p $(@D)
-	$(CXX) $(CXXFLAGS_ALL) $(CV_CFLAGS) -c $< -o $@
+	$(call say,CXX,$<)$(CXX) $(CXXFLAGS_ALL) $(CV_CFLAGS) -c $< -o $@
 $(BUILD)/tests/%.o: tests/%.c
 	@mkdir -p $(@D)
-	$(CC) $(CFLAGS_ALL) -Itests $(APP_CFLAGS) -DDATA='"$(DATA)"' -c $< -o $@
+	$(call say,CC,$<)$(CC) $(CFLAGS_ALL) -Itests $(APP_CFLAGS) -DDATA='"$(DATA)"' -c $< -o $@
 $(BUILD)/bench/%.o: bench/%.c
 	@mkdir -p $(@D)
-	$(CC) $(CFLAGS_ALL) -Itests $(APP_CFLAGS) -DDATA='"$(DATA)"' -c $< -o $@
+	$(call say,CC,$<)$(CC) $(CFLAGS_ALL) -Itests $(APP_CFLAGS) -DDATA='"$(DATA)"' -c $< -o $@
 $(BUILD)/bench/%.o: bench/%.cc
 	@mkdir -p $(@D)
-	$(CXX) $(CXXFLAGS_ALL) $(CV_CFLAGS) -c $< -o $@
-
+	$(call say,CXX,$<)$(CXX) $(CXXFLAGS_ALL) $(CV_CFLAGS) -c $< -o $@
 $(BUILD)/fuzz/%.o: fuzz/%.c
 	@mkdir -p $(@D)
-	$(CC) $(CFLAGS_ALL) $(APP_CFLAGS) -c $< -o $@
+	$(call say,CC,$<)$(CC) $(CFLAGS_ALL) $(APP_CFLAGS) -c $< -o $@
 
 # Only the application sees LCM, libconfig, Cairo, SDL and systemd.
-$(BUILD)/src/app/%.o: MODULE_CFLAGS = $(APP_CFLAGS) -DBILLIARD_CONFIG_DIR='"$(SYSCONFDIR)"'
-# Pixel loops: -O3 makes vectors of them (the same bits: contraction stays off).
-$(BUILD)/src/vision/%.o: MODULE_CFLAGS = $(if $(filter -O2,$(OPT)),-O3)
+$(BUILD)/src/app/%.o: ROOM_CFLAGS = $(APP_CFLAGS)
+$(BUILD)/src/app/config/config.o: ROOM_CFLAGS = $(APP_CFLAGS) -DBILLIARD_CONFIG_DIR='"$(SYSCONFDIR)"'
+$(BUILD)/src/vision/%.o: ROOM_CFLAGS = $(VISION_CFLAGS)
 
-# Another place for configurations is another config.o.
-$(BUILD)/sysconfdir: FORCE
+# A message type is a header and a source. Whoever includes the header is known from its .d file, and before the first build from the last line.
+$(BUILD)/lcmtypes/billiard_%.h $(BUILD)/lcmtypes/billiard_%.c: lcmtypes/%.lcm
 	@mkdir -p $(@D)
-	@echo '$(SYSCONFDIR)' | cmp -s - $@ || echo '$(SYSCONFDIR)' >$@
-$(BUILD)/src/app/config/config.o: $(BUILD)/sysconfdir
-FORCE:
-
+	$(call say,LCM,$<)lcm-gen -c --c-cpath $(@D) --c-hpath $(@D) --cinclude lcmtypes $<
 # Generated code warns under -Wextra: flags of its own.
-$(BUILD)/lcmtypes/.stamp: $(patsubst %,lcmtypes/%.lcm,$(LCM_TYPES))
-	@mkdir -p $(@D)
-	lcm-gen -c --c-cpath $(@D) --c-hpath $(@D) --cinclude lcmtypes $^
-	@touch $@
-$(BUILD)/lcmtypes/billiard_%.c: $(BUILD)/lcmtypes/.stamp ;
 $(BUILD)/lcmtypes/%.o: $(BUILD)/lcmtypes/%.c
-	$(CC) -std=gnu17 $(BASE) -w $(APP_CFLAGS) -c $< -o $@
-$(APP_O) $(patsubst %,$(BUILD)/src/app/programs/main_%.o,$(PROGRAMS)) $(TEST_SHARED_O) \
-	$(patsubst %,$(BUILD)/tests/test_%.o,$(TESTS)) $(patsubst %,$(BUILD)/bench/bench_%.o,$(BENCHES)) \
-	$(patsubst %,$(BUILD)/fuzz/fuzz_%.o,$(FUZZERS)): | $(BUILD)/lcmtypes/.stamp
+	$(call say,CC,$<)$(CC) -std=gnu17 $(BASE) -w $(CFLAGS) $(SAME_BITS) $(APP_CFLAGS) -c $< -o $@
+$(ALL_O): | $(LCM_H)
 
-link = $(CXX) $(BASE) $(LDFLAGS) -Wl,--as-needed -o $@ $(filter %.o,$^) -Wl,--start-group $(filter %.a,$^) -Wl,--end-group
-$(BUILD)/tests/test_%: $(BUILD)/tests/test_%.o $(TEST_SHARED_O) $(ARCHIVES)
+# ---- link ------------------------------------------------------------------------------------------------------------
+
+$(foreach room,$(ROOMS) tests bench,$(eval $(call archive,$(room)): $(OBJECTS_$(room)) $(BUILD)/flags/lib$(room)))
+$(BUILD)/lib%.a:
+	$(call say,AR,$@)rm -f $@ && $(AR) rcsD $@ $(filter %.o,$^)
+
+link = $(call say,LD,$@)$(CXX) $(LINK_FLAGS) -o $@ $(filter %.o,$^) $(filter %.a,$^)
+$(BUILD)/tests/test_%: $(BUILD)/tests/test_%.o $(TEST_ARCHIVE) $(ARCHIVES) $(BUILD)/flags/link
 	$(link) $(TEST_LIBS) $(LIBS)
-$(BUILD)/bench/bench_%: $(BUILD)/bench/bench_%.o $(BENCH_SHARED_O) $(ARCHIVES)
+$(BUILD)/bench/bench_%: $(BUILD)/bench/bench_%.o $(BENCH_ARCHIVE) $(TEST_ARCHIVE) $(ARCHIVES) $(BUILD)/flags/link
 	$(link) $(TEST_LIBS) $(LIBS)
-$(BUILD)/bench/eval_%: $(BUILD)/bench/eval_%.o $(BENCH_SHARED_O) $(ARCHIVES)
+$(BUILD)/bench/eval_%: $(BUILD)/bench/eval_%.o $(BENCH_ARCHIVE) $(TEST_ARCHIVE) $(ARCHIVES) $(BUILD)/flags/link
 	$(link) $(TEST_LIBS) $(LIBS)
-$(BUILD)/fuzz_%: $(BUILD)/fuzz/fuzz_%.o $(ARCHIVES)
+$(BUILD)/fuzz_%: $(BUILD)/fuzz/fuzz_%.o $(ARCHIVES) $(BUILD)/flags/link
 	$(link) -fsanitize=fuzzer $(LIBS)
-$(PROGRAM_BINS): $(BUILD)/%: $(BUILD)/src/app/programs/main_%.o $(ARCHIVES)
+$(PROGRAM_BINS): $(BUILD)/%: $(BUILD)/src/app/programs/main_%.o $(ARCHIVES) $(BUILD)/flags/link
 	$(link) $(LIBS)
 
-# ---- what people call ------------------------------------------------------------------------------------------------
+# ---- what people call: "## " says it in make help --------------------------------------------------------------------
 
-setup:
+help: ## this list
+	@sed -n 's/^\([a-z-]*\):[^#]*## /\1\t/p' Makefile | expand -t 16
+	@echo
+	@echo 'Variables: V=1 shows the commands; BUILD=dir; SAN=address,undefined or SAN=thread; OPT=-O2; JOBS=n; PREFIX, SYSCONFDIR, DESTDIR; DATA=dir; INPUT=dir'
+
+setup: ## installs the packages that are missing
 	@scripts/setup
 
-demo: setup
+demo: setup ## the whole loop on a virtual table; pictures in build/demo. INPUT=dir: photographs of a table instead
 	+@$(MAKE) --no-print-directory -j$(JOBS) programs
 	@scripts/demo "$(BUILD)" $(if $(INPUT),"$(INPUT)")
 
-check: setup
+check: setup ## builds and runs all tests; the last line counts them
 	+@$(MAKE) --no-print-directory check-built
 
-check-built: headers
+check-built: ## the same without the setup
 	+@$(MAKE) --no-print-directory -j$(JOBS) programs tests
+	+@$(MAKE) --no-print-directory -j$(JOBS) headers
 	@BUILD=$(BUILD) DATA=$(DATA) scripts/run-tests $(BUILD) $(addprefix test_,$(TESTS)) $(TEST_SCRIPTS)
 
-bench: setup
+bench: setup ## speed against error: a table, build/bench.json and plots in build
 	+@$(MAKE) --no-print-directory -j$(JOBS) programs $(BENCH_BINS)
 	@DATA=$(DATA) scripts/run-bench $(BUILD) $(BENCHES)
 
-# Writes tests/signatures.txt anew: a commit that changes it says which entries and why.
-signatures: $(BUILD)/tests/test_signature
+docs-pictures: ## the plots of the last make bench into docs/results, which is tracked
+	@scripts/docs-pictures $(BUILD) $(DATA) docs/results
+
+eval: setup ## accuracy on recorded data in DATA: tables and build/eval.json
+	+@$(MAKE) --no-print-directory -j$(JOBS) programs $(EVAL_BINS) $(BUILD)/tests/test_sim $(BUILD)/tests/test_roots
+	@scripts/run-eval $(BUILD) $(DATA) $(EVALS)
+
+signatures: $(BUILD)/tests/test_signature ## tests/signatures.txt anew: a commit that changes it says which entries and why
 	@rm -f $(BUILD)/signatures.txt
 	@BILLIARD_SIGNATURES=$(BUILD)/signatures.txt $<
 	@cp $(BUILD)/signatures.txt tests/signatures.txt
 	@git diff --stat -- tests/signatures.txt 2>/dev/null || true
 
 # clang's libFuzzer (packages clang and libclang-rt-14-dev), everything in a folder of its own.
-fuzz:
+fuzz: ## every fuzzer for FUZZ_SECONDS (needs clang)
 	+@$(MAKE) --no-print-directory -j$(JOBS) BUILD=$(BUILD)/fuzz SAN=address,undefined CC=clang CXX=clang++ OPT=-O1 \
 		CFLAGS=-fsanitize=fuzzer-no-link CXXFLAGS=-fsanitize=fuzzer-no-link fuzzers
 	@scripts/run-fuzz $(BUILD)/fuzz $(FUZZ_SECONDS) $(FUZZERS)
 fuzzers: $(FUZZ_BINS)
 
+headers: $(ARCHIVES) $(PROGRAM_O) lists ## who includes and calls whom: refuses what the rooms forbid
+	@CC="$(CC)" BUILD=$(BUILD) scripts/check-headers
+
+LISTED = $(patsubst $(BUILD)/%.o,%,$(filter-out $(LCM_O),$(ALL_O))) $(patsubst %,lcmtypes/%,$(LCM_TYPES)) \
+	$(addprefix tests/,$(TEST_SCRIPTS) $(TEST_CLIENTS))
+lists: ## refuses files that no list of the Makefile names
+	@scripts/check-lists $(LISTED)
+
 # Layout, faults, scripts: scripts/lint. Installs its own tools (scripts/packages-lint).
-lint: setup
+lint: setup ## layout and static checks of sources and scripts
 	@scripts/setup lint
-	+@$(MAKE) --no-print-directory $(BUILD)/lcmtypes/.stamp
+	+@$(MAKE) --no-print-directory generated
 	@scripts/lint $(BUILD)
 
 # DESTDIR stages, PREFIX and SYSCONFDIR decide; installed files name the final places. Existing configurations are kept as FILE.new beside them.
-install: programs
+install: programs ## programs, configuration, units, documents; DESTDIR, PREFIX, SYSCONFDIR
 	@scripts/install-files $(BUILD) "$(DESTDIR)" "$(PREFIX)" "$(SYSCONFDIR)" $(PROGRAMS)
 
-eval: setup
-	+@$(MAKE) --no-print-directory -j$(JOBS) programs $(EVAL_BINS) $(BUILD)/tests/test_sim $(BUILD)/tests/test_roots
-	@scripts/run-eval $(BUILD) $(DATA) $(EVALS)
-
-headers: $(BUILD)/lcmtypes/.stamp
-	@CC="$(CC)" BUILD=$(BUILD) scripts/check-headers
-
-clean:
+clean: ## removes the build folder
 	rm -rf $(BUILD)
 
 %.d: ;
