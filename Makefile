@@ -96,7 +96,7 @@ PROGRAM_O := $(call obj,src/app/programs,$(addprefix main_,$(PROGRAMS)))
 LCM_O := $(call obj,lcmtypes,$(addprefix billiard_,$(LCM_TYPES)))
 LCM_H := $(LCM_O:.o=.h)
 # One archive a room. The order is that of linking: each needs only what stands behind it.
-APP_ROOMS := commands control light virtual planner process config
+APP_ROOMS := commands control virtual planner light process config
 ROOMS := $(addprefix app-,$(APP_ROOMS)) lcmtypes search vision physics
 OBJECTS_app-commands := $(call obj,src/app/commands,$(APP_COMMANDS))
 OBJECTS_app-control := $(call obj,src/app/control,$(APP_CONTROL))
