@@ -13,7 +13,7 @@ check() {
 lcm-gen -c --c-cpath "$dir" --c-hpath "$dir" lcmtypes/*.lcm
 check "lcm-gen -c" $?
 # shellcheck disable=SC2046
-"${CC:-gcc}" -std=gnu17 -w -I"$dir" $(pkg-config --cflags lcm) -o "$dir/client" tests/outside_client.c "$dir"/*.c $(pkg-config --libs lcm)
+${CC:-gcc} -std=gnu17 -w -I"$dir" $(pkg-config --cflags lcm) -o "$dir/client" tests/outside_client.c "$dir"/*.c $(pkg-config --libs lcm)
 check "the client compiles" $?
 export LCM_DEFAULT_URL="udpm://239.255.76.67:7667?ttl=0&recv_buf_size=4194304"
 # shellcheck disable=SC2016
