@@ -5,14 +5,24 @@
 #include <exception>
 #include <vector>
 
-#include <opencv2/aruco.hpp>
+#include <opencv2/core/version.hpp>
 #include <opencv2/imgproc.hpp>
+/* Since 4.7 the markers are in OpenCV itself and no more among its contributions. */
+#if CV_VERSION_MAJOR > 4 || CV_VERSION_MINOR >= 7
+#include <opencv2/objdetect/aruco_detector.hpp>
+#else
+#include <opencv2/aruco.hpp>
+#endif
 
 #include "vision/reason.h"
 
 struct marker_finder {
+#if CV_VERSION_MAJOR > 4 || CV_VERSION_MINOR >= 7
+	cv::aruco::ArucoDetector detector;
+#else
 	cv::Ptr<cv::aruco::Dictionary> dictionary;
 	cv::Ptr<cv::aruco::DetectorParameters> parameters;
+#endif
 	cv::Mat grey;
 	std::vector<int> ids;
 	std::vector<std::vector<cv::Point2f>> corners;
@@ -42,10 +52,45 @@ void insert(sorted *s, const marker_view &view)
 	s->count++;
 }
 
+void refine_corners(cv::aruco::DetectorParameters *p)
+{
+	p->cornerRefinementMethod = cv::aruco::CORNER_REFINE_SUBPIX;
+	/* Larger windows reach the marker's inner squares and are drawn off by them. */
+	p->cornerRefinementWinSize = 3;
+	p->cornerRefinementMaxIterations = 50;
+	p->cornerRefinementMinAccuracy = 0.01;
+}
+
+#if CV_VERSION_MAJOR > 4 || CV_VERSION_MINOR >= 7
+void prepare(marker_finder *f, int dictionary_count, int dictionary_bits)
+{
+	cv::aruco::DetectorParameters parameters;
+	refine_corners(&parameters);
+	f->detector = cv::aruco::ArucoDetector(cv::aruco::extendDictionary(dictionary_count, dictionary_bits), parameters);
+}
+
+void detect(marker_finder *f)
+{
+	f->detector.detectMarkers(f->grey, f->corners, f->ids);
+}
+#else
+void prepare(marker_finder *f, int dictionary_count, int dictionary_bits)
+{
+	f->dictionary = cv::aruco::generateCustomDictionary(dictionary_count, dictionary_bits);
+	f->parameters = cv::aruco::DetectorParameters::create();
+	refine_corners(f->parameters.get());
+}
+
+void detect(marker_finder *f)
+{
+	cv::aruco::detectMarkers(f->grey, f->dictionary, f->corners, f->ids, f->parameters);
+}
+#endif
+
 void search(marker_finder *f, const cv::Mat &bgr, cv::Point offset, sorted *found)
 {
 	cv::cvtColor(bgr, f->grey, cv::COLOR_BGR2GRAY);
-	cv::aruco::detectMarkers(f->grey, f->dictionary, f->corners, f->ids, f->parameters);
+	detect(f);
 	for (size_t i = 0; i < f->ids.size(); i++) {
 		marker_view view;
 		view.id = f->ids[i];
@@ -87,13 +132,7 @@ int marker_finder_create(struct marker_finder **out, int dictionary_count, int d
 		/* Vision has one thread, OpenCV's own would take the other programs' cores. */
 		cv::setNumThreads(0);
 		f = new marker_finder;
-		f->dictionary = cv::aruco::generateCustomDictionary(dictionary_count, dictionary_bits);
-		f->parameters = cv::aruco::DetectorParameters::create();
-		f->parameters->cornerRefinementMethod = cv::aruco::CORNER_REFINE_SUBPIX;
-		/* Larger windows reach the marker's inner squares and are drawn off by them. */
-		f->parameters->cornerRefinementWinSize = 3;
-		f->parameters->cornerRefinementMaxIterations = 50;
-		f->parameters->cornerRefinementMinAccuracy = 0.01;
+		prepare(f, dictionary_count, dictionary_bits);
 	} catch (const std::exception &e) {
 		delete f;
 		return vision_fail(-EINVAL, err, err_size, "markers: %.80s", e.what());

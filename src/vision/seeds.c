@@ -124,7 +124,7 @@ static void vote_row(struct seeds *seeds, const struct scan *scan, int y, int x0
 	ptrdiff_t row = 3 * (ptrdiff_t)scan->width;
 	const struct seed_shape *shapes = seeds->shape + y / SCAN_CELL * scan->cells_x;
 	for (int x = x0; x < x1; x++) {
-		int gx, gy;
+		int gx = 0, gy = 0;
 		if (!near_foreign(scan->mark + y * scan->width + x, scan->width) ||
 		    edge_at(scan->bgr + y * row + 3 * x, row, &gx, &gy) < EDGE_MIN2)
 			continue;

@@ -205,7 +205,7 @@ static void draw_pocket(const struct scene *scene)
  * pocket. */
 static void draw_labels(const struct scene *scene, int number, int shots)
 {
-	char text[64], which[24] = "";
+	char text[64], which[32] = "";
 	int pocket = scene->shot->pocket, cue = cue_ball(scene);
 	if (shots > 1)
 		snprintf(which, sizeof(which), "  %d/%d", number, shots);
