@@ -46,7 +46,7 @@ TESTS += shipped
 TEST_SHARED := harness brute_force bus_fixture service_fixture planner_client random poly_judge scenes search_scenes shot_compare thesis_lists vision_rig vision_scene
 TESTS += event_log judge_match
 # tests that are scripts: tests/NAME.sh, called with the build folder
-TEST_SCRIPTS := cli demo planner units
+TEST_SCRIPTS := cli demo planner units build borders
 # tests/NAME.c: programs of their own that a test script compiles
 TEST_CLIENTS := outside_client
 # bench/bench_NAME.c each; bench/NAME.c shared by them
@@ -79,7 +79,8 @@ APP_PKGS := lcm glib-2.0 libconfig jansson cairo sdl2 libsystemd
 APP_CFLAGS = $(eval APP_CFLAGS := $$(shell pkg-config --cflags $(APP_PKGS)))$(APP_CFLAGS)
 # opencv4.pc comes with libopencv-dev only, which brings far more than is used here.
 CV_CFLAGS := -isystem /usr/include/opencv4
-CV_LIBS := -lopencv_aruco -lopencv_calib3d -lopencv_videoio -lopencv_imgcodecs -lopencv_imgproc -lopencv_core
+# OpenCV 4.7 and later have the markers in objdetect.
+CV_LIBS = $(if $(wildcard /usr/include/opencv4/opencv2/objdetect/aruco_detector.hpp),-lopencv_objdetect,-lopencv_aruco) -lopencv_calib3d -lopencv_videoio -lopencv_imgcodecs -lopencv_imgproc -lopencv_core
 APP_LIBS = $(eval APP_LIBS := $$(shell pkg-config --libs $(APP_PKGS)))$(APP_LIBS)
 TEST_LIBS = $(eval TEST_LIBS := $$(shell pkg-config --libs check gsl))$(TEST_LIBS)
 LIBS = $(CV_LIBS) $(APP_LIBS) -lm -lpthread
