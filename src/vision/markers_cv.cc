@@ -66,6 +66,10 @@ void prepare(marker_finder *f, int dictionary_count, int dictionary_bits)
 {
 	cv::aruco::DetectorParameters parameters;
 	refine_corners(&parameters);
+#if CV_VERSION_MAJOR > 4 || CV_VERSION_MINOR >= 9
+	/* The window stays what it is, also for small markers. */
+	parameters.relativeCornerRefinmentWinSize = 10;
+#endif
 	f->detector = cv::aruco::ArucoDetector(cv::aruco::extendDictionary(dictionary_count, dictionary_bits), parameters);
 }
 
