@@ -71,7 +71,7 @@ void value_add(struct value_search *v, int root, const struct record *record)
 	if (v->stroke_count == VALUE_ADDED)
 		return;
 	struct stroke *stroke = &v->stroke[v->stroke_count++];
-	*stroke = (struct stroke){.record = *record, .root = root, .value = -1000};
+	*stroke = (struct stroke){.record = *record, .root = root, .opening = -1, .value = -1000};
 }
 
 bool value_play(struct value_search *v, struct value_worker *worker, int root, struct record *record,

@@ -30,6 +30,7 @@ struct value_request {
 struct stroke {
 	struct record record; /* shot, target (-1: a contact only), pocket, chain */
 	int root;	      /* index into the request's roots */
+	int opening;	      /* which direct pot it is aimed at; -1: none, it was found otherwise */
 	double value;	      /* points */
 	double chance;	      /* of the pot; of a legal contact when there is no target */
 	double sum;	      /* of the samples' values */

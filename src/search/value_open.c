@@ -36,9 +36,8 @@ static void set_record(const struct value_search *v, const struct opening *openi
 	record->tolerance_angle = opening->pot.half / fmax(aimed->gain, 1e-6);
 }
 
-/* One stroke at a pot: aimed, played as meant, its end estimated. False when it is none. */
-static bool try_stroke(struct value_search *v, struct value_worker *worker, const struct opening *opening,
-		       const struct shot *shot, struct stroke *out)
+bool value_try(struct value_search *v, struct value_worker *worker, const struct opening *opening,
+	       const struct shot *shot, struct stroke *out)
 {
 	const struct value_root *root = &v->request.root[opening->root];
 	struct aimed aimed = {.shot = *shot};
@@ -46,7 +45,8 @@ static bool try_stroke(struct value_search *v, struct value_worker *worker, cons
 	if (!stroke_aim(&v->estimator, &v->model, &root->ball[v->request.cue], &root->ball[opening->pot.ball],
 			&opening->pot, &aimed))
 		return false;
-	*out = (struct stroke){.root = opening->root, .chance = aimed.chance};
+	*out = (struct stroke){
+		.root = opening->root, .opening = (int)(opening - v->opening), .chance = aimed.chance};
 	set_record(v, opening, &aimed, &out->record);
 	if (!value_play(v, worker, opening->root, &out->record, &outcome) || out->record.foul != 0 ||
 	    !shot_is_as_meant(&out->record))
@@ -80,7 +80,7 @@ static int open_pot(struct value_search *v, struct value_worker *worker, const s
 				struct shot shot = {
 					.speed = SPEEDS[s], .follow = FOLLOWS[f], .side = SIDES[side]};
 				struct stroke stroke;
-				if (!value_is_over(v) && try_stroke(v, worker, opening, &shot, &stroke))
+				if (!value_is_over(v) && value_try(v, worker, opening, &shot, &stroke))
 					keep(list, &count, VALUE_PER_POT, &stroke);
 			}
 	return count;

@@ -5,7 +5,7 @@
 #include "search/value_state.h"
 
 /* Shares of all simulations for the rounds on estimates and for the second ply. */
-static const double RACE_SHARE = 0.3, DEEP_SHARE = 0.35;
+static const double RACE_SHARE = 0.25, REFINE_SHARE = 0.15, DEEP_SHARE = 0.3;
 /* Simulations that searching the next shot takes: three pots, twelve strokes, aims counted half. */
 static const double NEXT_SIMS = 3 * 12 * 1.4;
 
@@ -55,7 +55,7 @@ static void sample(struct value_search *v, struct value_worker *worker, struct s
 static void sample_item(void *context, int item, int worker)
 {
 	struct value_search *v = context;
-	struct stroke *stroke = &v->stroke[v->order[item]];
+	struct stroke *stroke = &v->stroke[v->first >= 0 ? v->first + item : v->order[item]];
 	struct leave leave = {.count = 0};
 	/* a round begins anew: its samples are the first of the sequence for everybody */
 	struct stroke fresh = *stroke;
@@ -83,6 +83,7 @@ static void round_of(struct value_search *v, int field, int count, bool deep)
 		count = VALUE_SAMPLES;
 	v->to_sample = count;
 	v->deep = deep;
+	v->first = -1;
 	uint32_t before = v->stroke_count > 0 ? v->stroke[v->order[0]].key : 0;
 	pool_for(v->pool, field, sample_item, v);
 	/* those out of the race keep their place behind those in it */
@@ -93,7 +94,64 @@ static void round_of(struct value_search *v, int field, int count, bool deep)
 		v->hooks->improved(v->hooks->context);
 }
 
-/* The same outcome again for those that were only sampled: what results say of a stroke is what it does as meant. */
+/* ---- neighbours of those that lead -----------------------------------------------------------------------------------
+ */
+
+enum { LEADERS = 4, PASSES = 2, MOVES = 6 };
+
+/* The stroke with one thing changed by a step: speed, follow, side; what no aim was found for is turned a little. */
+static bool neighbour(struct value_search *v, const struct stroke *from, int move, double step, struct stroke *out)
+{
+	struct shot shot = from->record.shot;
+	double sign = move % 2 ? -step : step;
+	if (move < 2)
+		shot.speed *= 1 + 0.14 * sign;
+	else if (move < 4)
+		shot.follow += 0.12 * sign;
+	else if (from->opening >= 0)
+		shot.side += 0.15 * sign;
+	else
+		shot.angle += 0.002 * sign;
+	if (hypot(shot.side, shot.follow) > 0.5 || shot.speed > v->request.max_speed)
+		return false;
+	if (from->opening >= 0)
+		return value_try(v, &v->worker[0], &v->opening[from->opening], &shot, out);
+	struct rules_outcome outcome;
+	*out = *from;
+	out->record.shot = shot;
+	return value_play(v, &v->worker[0], out->root, &out->record, &outcome) && out->record.foul == 0;
+}
+
+static void add_neighbours(struct value_search *v, double step)
+{
+	int leaders = v->stroke_count < LEADERS ? v->stroke_count : LEADERS;
+	uint16_t leader[LEADERS];
+	memcpy(leader, v->order, sizeof leader);
+	for (int i = 0; i < leaders; i++)
+		for (int move = 0; move < MOVES && v->stroke_count < VALUE_STROKES && !value_is_over(v); move++) {
+			struct stroke *out = &v->stroke[v->stroke_count];
+			if (!neighbour(v, &v->stroke[leader[i]], move, step, out))
+				continue;
+			out->key = (uint32_t)v->stroke_count++;
+		}
+}
+
+/* Continuous in speed and tip: the best are moved a little, and what is better takes their place. */
+static void refine(struct value_search *v)
+{
+	double sims = REFINE_SHARE * (double)v->request.sims;
+	int count = (int)(sims / PASSES / (LEADERS * MOVES));
+	for (int pass = 0; pass < PASSES && count >= LEAST_SAMPLES && !value_is_over(v); pass++) {
+		int first = v->stroke_count;
+		add_neighbours(v, pass == 0 ? 1 : 0.5);
+		v->to_sample = count < VALUE_SAMPLES ? count : VALUE_SAMPLES;
+		v->deep = false;
+		v->first = first;
+		pool_for(v->pool, v->stroke_count - first, sample_item, v);
+		value_sort(v);
+	}
+}
+
 void value_race(struct value_search *v)
 {
 	double sims = RACE_SHARE * (double)v->request.sims;
@@ -109,6 +167,7 @@ void value_race(struct value_search *v)
 		round_of(v, field, count, false);
 		field = field * 2 / 5;
 	}
+	refine(v);
 	double deep = DEEP_SHARE * (double)v->request.sims / NEXT_SIMS;
 	int leaders = deep >= 60 ? 6 : deep >= 30 ? 4 : 3;
 	int count = (int)(deep / leaders);

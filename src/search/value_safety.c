@@ -5,7 +5,8 @@
 
 enum { FAN = 720, DIRECTIONS = 96, FAN_EVENTS = 16, SPEED_COUNT = 6 };
 static const double SPEEDS[SPEED_COUNT] = {0.6, 1.0, 1.6, 2.4, 3.4, 4.6};
-static const double FAN_SPEED = 2.4; /* m/s, for finding out what is met first */
+static const double FAN_SPEED = 2.4;	/* m/s, for finding out what is met first */
+static const double FLUKE_CHANCE = 0.4; /* of a pot that a fan found, until it is sampled */
 
 struct fan {
 	struct value_search *value;
@@ -49,6 +50,20 @@ static void find_directions(struct fan *fan)
 		fan->angle[i] = fan->angle[i * found / DIRECTIONS];
 }
 
+/* What falls by rule makes the contact a pot: plants, cushions and kisses that no chain was built for. */
+static void name_pot(const struct value_search *v, struct record *record)
+{
+	const struct value_root *root = &v->request.root[0];
+	for (int i = 0; i < record->potted_count && record->points > 0; i++) {
+		int ball = record->potted[i].ball;
+		if (!rules_ball_on(&root->rules, root->ball, v->request.ball_count, ball) || !(root->wanted >> ball & 1))
+			continue;
+		record->target = (int16_t)ball;
+		record->pocket = record->potted[i].pocket;
+		return;
+	}
+}
+
 static void direction_item(void *context, int item, int worker)
 {
 	struct fan *fan = context;
@@ -57,7 +72,7 @@ static void direction_item(void *context, int item, int worker)
 	for (int k = 0; k < 2; k++)
 		fan->best[item][k].value = -INFINITY;
 	for (int s = 0; s < SPEED_COUNT && SPEEDS[s] <= v->request.max_speed && !value_is_over(v); s++) {
-		struct stroke stroke = {.root = 0};
+		struct stroke stroke = {.root = 0, .opening = -1};
 		struct record *record = &stroke.record;
 		memset(record, 0, sizeof *record);
 		record->shot = (struct shot){.angle = fan->angle[item], .speed = SPEEDS[s]};
@@ -70,6 +85,9 @@ static void direction_item(void *context, int item, int worker)
 		record->chain[1] = (int16_t)rules_first_contact(&v->worker[worker].work.trace, v->request.cue);
 		record->chain_count = record->chain[1] >= 0 ? 2 : 1;
 		stroke.value = value_of_outcome(v, &v->worker[worker], record, &outcome, false);
+		name_pot(v, record);
+		if (record->target >= 0)
+			stroke.value *= FLUKE_CHANCE;
 		if (stroke.value > fan->best[item][0].value) {
 			fan->best[item][1] = fan->best[item][0];
 			fan->best[item][0] = stroke;

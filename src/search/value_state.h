@@ -12,7 +12,7 @@ enum {
 	VALUE_PER_POT = 10,	/* strokes kept of each */
 	VALUE_ADDED = 64,	/* shots that the caller has found */
 	VALUE_SAFETIES = 48,	/* contact shots kept */
-	VALUE_REFINED = 32,	/* neighbours of the leaders */
+	VALUE_REFINED = 48,	/* neighbours of the leaders */
 	VALUE_STROKES = VALUE_POTS * VALUE_PER_POT + VALUE_ADDED + VALUE_SAFETIES + VALUE_REFINED,
 	VALUE_SAMPLES = 512,	/* points of the player's error */
 	VALUE_ACROSS = 14	/* speeds or directions of contact shots tried at each */
@@ -47,7 +47,9 @@ struct value_search {
 	struct stroke stroke[VALUE_STROKES];
 	int stroke_count;
 	uint16_t order[VALUE_STROKES]; /* indices of strokes, best first */
-	int to_sample, deep;	       /* of the running round: samples each stroke shall have; searched next shots */
+	int to_sample;		       /* of the running round: samples that each stroke shall have */
+	bool deep;		       /* of the running round: next shots are searched */
+	int first;		       /* of the running round: index of the first stroke of a range, -1: by order */
 };
 
 bool value_is_over(const struct value_search *value);
@@ -62,6 +64,10 @@ double value_of_outcome(struct value_search *value, struct value_worker *worker,
 
 /* Finds the pots of all roots and opens them into strokes. */
 void value_open(struct value_search *value);
+/* One stroke of that speed and tip at a pot: aimed, played as meant, its end estimated. False when it is none. opening is
+ * one of value->opening. */
+bool value_try(struct value_search *value, struct value_worker *worker, const struct opening *opening,
+	       const struct shot *shot, struct stroke *out);
 /* Finds contact shots whose leave costs the opponent most. */
 void value_find_safeties(struct value_search *value);
 /* Sequential halving over the strokes that there are, then the second ply for those that lead. */
