@@ -253,7 +253,7 @@ START_TEST(all_in_one_line)
 			p.any_first = p.keep_flukes = p.program_speed = false;
 			p.aims = 9;
 			p.clearance = 0.002;
-			p.rank_by_success = true;
+			p.ranking = RANK_SUCCESS;
 		}
 		h.planner = scene_planner(&h.table, model[_i % 5], &p, 1);
 		for (int n = 0; n < 60; n++) {

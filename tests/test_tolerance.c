@@ -37,8 +37,8 @@ static double sampled(struct random *random, const struct table *table, const st
 	int good = 0;
 	for (int i = 0; i < SAMPLES; i++) {
 		struct shot played = shot->shot;
-		played.angle += profile->sigma_angle * normal(random);
-		played.speed *= fmax(0.01, 1 + profile->sigma_speed * normal(random));
+		played.angle += profile->error.angle * normal(random);
+		played.speed *= fmax(0.01, 1 + profile->error.speed * normal(random));
 		good += falls(table, model, shot, count, &played);
 	}
 	return (double)good / SAMPLES;
@@ -48,8 +48,8 @@ static struct cost_profile player(void)
 {
 	struct cost_profile profile = cost_profile_thesis();
 	profile.any_first = profile.keep_flukes = profile.program_speed = false;
-	profile.sigma_angle = 0.2 * M_PI / 180;
-	profile.sigma_speed = 0.04;
+	profile.error.angle = 0.2 * M_PI / 180;
+	profile.error.speed = 0.04;
 	profile.pocket_speed = 0.2;
 	return profile;
 }
@@ -130,7 +130,7 @@ START_TEST(order_by_success)
 	struct table table = scene_thesis_table();
 	struct cost_profile profile = player();
 	struct ball ball[BALL_MAX];
-	profile.rank_by_success = true;
+	profile.ranking = RANK_SUCCESS;
 	struct planner *planner = scene_planner(&table, "thesis", &profile, 2);
 	for (int n = 0; n < 5; n++) {
 		scene_random(&random, &table, 0.03, ball, 8);

@@ -1,7 +1,6 @@
 #include "search/export.h"
 
-/* The plan_shot of a record played from ball. */
-static void shot_export(const struct record *record, const struct ball *ball, int count, struct plan_shot *out)
+void shot_export(const struct record *record, const struct ball *ball, int count, struct plan_shot *out)
 {
 	*out = (struct plan_shot){
 		.shot = record->shot,
@@ -17,6 +16,8 @@ static void shot_export(const struct record *record, const struct ball *ball, in
 		.tolerance_angle = record->tolerance_angle,
 		.tolerance_speed = record->tolerance_speed,
 		.success = record->success,
+		.value = NAN,
+		.leave_radius = NAN,
 		.hash = record->hash,
 	};
 	for (int i = 0; i < count; i++)

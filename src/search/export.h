@@ -4,6 +4,9 @@
 
 #include "search/planner.h"
 
+/* The plan_shot of a record played from ball. */
+void shot_export(const struct record *record, const struct ball *ball, int count, struct plan_shot *out);
+
 /* The best so far, with at most limit plans filled in; 0: all. */
 void planner_export(struct planner *planner, int limit, struct plan_result *result);
 

@@ -6,6 +6,7 @@
 #include <limits.h>
 #include <stdio.h>
 #include <stdlib.h>
+#include <string.h>
 
 #include "search/crew.h"
 #include "search/export.h"
@@ -14,9 +15,29 @@
 #include "search/safety.h"
 #include "search/start.h"
 #include "search/step.h"
+#include "search/worth.h"
 
 /* Of a live budget, for those who rank by success, and for those who only want to know the tolerance of a few plans. */
 static const double RANKING_SHARE = 0.2, TOLERANCE_SHARE = 0.05;
+/* The same for chains over balls and cushions, where shots are ranked by value. */
+static const double CHAIN_SHARE = 0.2;
+
+static const char *const ranking_names[] = {[RANK_THESIS] = "thesis", [RANK_SUCCESS] = "success", [RANK_VALUE] = "value"};
+
+const char *plan_ranking_name(enum plan_ranking ranking)
+{
+	return ranking_names[ranking];
+}
+
+bool plan_ranking_from_name(const char *name, enum plan_ranking *ranking)
+{
+	for (size_t i = 0; i < sizeof ranking_names / sizeof *ranking_names; i++)
+		if (strcmp(name, ranking_names[i]) == 0) {
+			*ranking = (enum plan_ranking)i;
+			return true;
+		}
+	return false;
+}
 
 struct planner_def planner_def_default(void)
 {
@@ -58,15 +79,18 @@ static int take_memory(struct planner *planner)
 		rc = pool_create(&planner->pool, workers);
 	if (rc == 0 && !batches)
 		rc = crew_create(&planner->crew, planner, bytes);
+	if (rc == 0 && planner->def.profile.ranking == RANK_VALUE)
+		rc = value_create(&planner->value, planner->def.table, &planner->def.model, planner->pool, workers);
 	return rc;
 }
 
 /* What the search takes for granted of a profile; false for NaN, too. */
 static bool profile_is_valid(const struct cost_profile *p)
 {
-	const double not_negative[] = {p->w_distance,	 p->w_angle,  p->w_balls,     p->w_rails,      p->ball_cost,
-				       p->rail_cost,	 p->w_points, p->w_speed,     p->w_simulation, p->clearance,
-				       p->cue_clearance, p->cue_room, p->sigma_angle, p->sigma_speed};
+	const double not_negative[] = {p->w_distance,	p->w_angle,	  p->w_balls,	    p->w_rails,	    p->ball_cost,
+				       p->rail_cost,	p->w_points,	  p->w_speed,	    p->w_simulation, p->clearance,
+				       p->cue_clearance, p->cue_room,	  p->error.angle,
+				       p->error.speed,	p->error.tip,	  p->error.elevation};
 	bool valid = p->max_cut > 0 && p->max_cut <= M_PI / 2 && p->max_speed > 0 && p->max_speed <= SHOT_SPEED_MAX &&
 		     p->pocket_speed > 0 && isfinite(p->pocket_speed) && p->speed_step > 0 && p->aims >= 1 &&
 		     p->aims <= AIMS_MAX - 1;
@@ -108,6 +132,7 @@ void planner_destroy(struct planner *planner)
 {
 	if (!planner)
 		return;
+	value_destroy(planner->value);
 	pool_destroy(planner->pool);
 	crew_destroy(planner->crew);
 	frontier_finish(&planner->frontier);
@@ -146,7 +171,9 @@ static void search(struct planner *planner, plan_progress_fn *progress, void *co
 {
 	double budget = planner->task.request->budget.seconds, begin = budget > 0 ? budget_now(&planner->budget) : 0;
 	double share = 1;
-	if (planner->def.profile.rank_by_success)
+	if (planner->value)
+		share = CHAIN_SHARE;
+	else if (planner->def.profile.ranking == RANK_SUCCESS)
 		share -= RANKING_SHARE;
 	else if (planner->task.request->tolerances > 0)
 		share -= TOLERANCE_SHARE;
@@ -159,7 +186,10 @@ static void search(struct planner *planner, plan_progress_fn *progress, void *co
 	if (!results_have_pot(planner->results))
 		safety_find(planner, true);
 	planner->budget.deadline = budget > 0 ? begin + budget : INFINITY;
-	rank_solutions(planner);
+	if (planner->value)
+		worth_run(planner, progress, context, result);
+	else
+		rank_solutions(planner);
 }
 
 int planner_run(struct planner *planner, const struct plan_request *request, plan_progress_fn *progress, void *context,
@@ -172,11 +202,21 @@ int planner_run(struct planner *planner, const struct plan_request *request, pla
 	}
 	if (rc != 0)
 		return rc;
-	planner->task.request = request;
+	planner->request = *request;
+	if (planner->value) { /* a visit is a plan of one shot: what follows is in its value */
+		planner->request.depth = 1;
+		planner->request.budget.nodes = (uint64_t)ceil(CHAIN_SHARE * (double)request->budget.nodes);
+	}
+	planner->nodes_wanted = request->budget.nodes;
+	planner->task.request = &planner->request;
 	planner->budget.run = request->run;
 	search(planner, progress, context, result);
 	bool cancelled = budget_is_cancelled(&planner->budget);
-	planner_export(planner, cancelled ? planner->def.progress_plans : planner->def.result_plans, result);
+	int plans = cancelled ? planner->def.progress_plans : planner->def.result_plans;
+	if (planner->value && worth_has_results(planner))
+		worth_export(planner, plans, result);
+	else
+		planner_export(planner, plans, result);
 	planner->task.request = NULL;
 	if (!cancelled)
 		return 0;

@@ -4,6 +4,7 @@
 #define BILLIARD_SEARCH_PLAN_H
 
 #include "physics/sim.h"
+#include "search/player_error.h"
 #include "search/rules.h"
 #include "search/scheme.h"
 
@@ -15,6 +16,16 @@ enum {
 	PLAN_POTTED_MAX = 8,
 	PLAN_WORKERS_MAX = 16
 };
+
+/* What decides which proposal comes first. */
+enum plan_ranking {
+	RANK_THESIS,  /* the cost of 4.104, sequences of depth shots */
+	RANK_SUCCESS, /* the chance that all shots of a sequence succeed */
+	RANK_VALUE    /* expected points of the visit less what the opponent may expect (search/value.h); one shot */
+};
+/* "thesis", "success", "value"; never NULL. */
+const char *plan_ranking_name(enum plan_ranking ranking);
+bool plan_ranking_from_name(const char *name, enum plan_ranking *ranking);
 
 /* A player profile (thesis O-6): weights and constants of the cost, by name of the term. Filled from config/. */
 struct cost_profile {
@@ -30,9 +41,9 @@ struct cost_profile {
 	double clearance;		 /* m over the diameter along a ball's way */
 	double cue_clearance;		 /* m beyond the radius beside the cue */
 	double cue_room;		 /* m behind the cue ball */
-	double sigma_angle, sigma_speed; /* player's error, rad and share of the speed (1 sigma) */
+	struct player_error error;	 /* how this player errs */
 	int aims; /* 1: the middle of a pocket; 3, 5, ...: points across it too, for what the middle does not give */
-	bool rank_by_success; /* false: the thesis' cost */
+	enum plan_ranking ranking;
 	bool program_speed;   /* start speeds by 4.33 for every leg, as the thesis' program; false: both branches */
 	bool any_first;	      /* do not ask which ball is struck first, as that program; false: by the rules */
 	bool keep_flukes; /* keep legal pots that are not the intended one, named by what falls, as that program does */
@@ -62,6 +73,8 @@ struct plan_request {
 	int tolerances; /* of so many of the best plans tolerance and success are found, 0..PLAN_MAX; costs some 40
 			   simulations a shot */
 	struct plan_budget budget;
+	bool has_error;		   /* error holds, not the profile's */
+	struct player_error error;
 	uint64_t run; /* number by which planner_cancel() names this run, the caller's, rising from 1; 0: none can */
 };
 /* Direct and via one ball, no cushions, one shot, one speed, 10 plans, tolerance of one, no budget. */
@@ -84,6 +97,9 @@ struct plan_shot {
 	double tolerance_angle,
 		tolerance_speed; /* rad, share: half-width within which the pot still falls; 0 unknown */
 	double success;		 /* probability for the profile's spread, 0..1; NAN unknown */
+	double value;		 /* points of the visit less what the opponent may expect; NAN unknown */
+	vec2 leave;		 /* m, where the cue ball is meant to come to rest */
+	double leave_radius;	 /* m, half of the samples end within it; NAN: leave is unknown */
 	uint64_t hash;		 /* sim_hash at rest */
 };
 

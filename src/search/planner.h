@@ -5,6 +5,7 @@
 #include "search/frontier.h"
 #include "search/pool.h"
 #include "search/solutions.h"
+#include "search/value.h"
 
 enum { BATCH = 32 /* nodes worked on at a time: never depends on the number of workers, so that results do not */ };
 
@@ -30,9 +31,12 @@ struct planner {
 	struct plan *plan;	 /* PLAN_MAX, what results point to */
 	struct frontier frontier;
 	struct crew *crew; /* NULL for SCHEME_BATCH */
+	struct value_search *value; /* NULL unless the profile ranks by value */
 	struct shown shown;
 
 	/* of the running search */
+	struct plan_request request; /* what the search for chains is asked for */
+	uint64_t nodes_wanted;	     /* the whole budget: chains may take a share of it */
 	struct task task;
 	int state_count, batch_count;
 	uint64_t count[COUNT_KINDS];

@@ -63,9 +63,9 @@ static void sort_by_chance(const struct planner *planner, struct solutions *list
 void rank_solutions(struct planner *planner)
 {
 	struct solutions *list = results_best(planner->results);
-	bool by_success = planner->def.profile.rank_by_success;
-	int wanted = by_success && planner->task.request->tolerances < RANKED_MAX ? RANKED_MAX
-										  : planner->task.request->tolerances;
+	bool by_success = planner->def.profile.ranking == RANK_SUCCESS;
+	int wanted =
+		by_success && planner->task.request->tolerances < RANKED_MAX ? RANKED_MAX : planner->task.request->tolerances;
 	struct ranking ranking = {.planner = planner, .count = 0};
 	if (!list)
 		return;

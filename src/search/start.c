@@ -96,7 +96,7 @@ void search_begin(struct planner *planner)
 	memset(planner->count, 0, sizeof planner->count);
 	planner->overflow = planner->cut = false;
 	/* who ranks by success must look at more than the cheapest few */
-	bool ranks = planner->def.profile.rank_by_success && request->plans < RANKED_MAX;
+	bool ranks = planner->def.profile.ranking != RANK_THESIS && request->plans < RANKED_MAX;
 	results_clear(planner->results, request->depth, ranks ? RANKED_MAX : request->plans);
 	if (request->state.in_hand)
 		add_places_in_hand(planner);

@@ -75,5 +75,5 @@ void tolerance_find(const struct task *task, const struct state *state, struct r
 		return; /* what was found is cut short: it stays unknown */
 	record->tolerance_angle = fmin(left, right);
 	record->tolerance_speed = fmin(faster, slower);
-	record->success = within(right, left, profile->sigma_angle) * within(slower, faster, profile->sigma_speed);
+	record->success = within(right, left, profile->error.angle) * within(slower, faster, profile->error.speed);
 }

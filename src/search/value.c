@@ -79,7 +79,8 @@ bool value_play(struct value_search *v, struct value_worker *worker, int root, s
 {
 	const struct value_root *r = &v->request.root[root];
 	worker->sims++;
-	return shot_play(&worker->work, v->table, &v->model, r->ball, v->request.ball_count, &r->rules, record, outcome);
+	const struct setting from = {v->table, &v->model, r->ball, v->request.ball_count, &r->rules};
+	return shot_play(&worker->work, &from, record, outcome);
 }
 
 double value_of_outcome(struct value_search *v, struct value_worker *worker, const struct record *record,
@@ -123,6 +124,11 @@ const struct stroke *value_result(const struct value_search *v, int rank)
 	if (rank < 0 || rank >= v->stroke_count || rank >= VALUE_RESULTS)
 		return NULL;
 	return &v->stroke[v->order[rank]];
+}
+
+int value_root_index(const struct value_search *v, int root)
+{
+	return v->request.root[root].index;
 }
 
 uint64_t value_sims(const struct value_search *v)

@@ -68,6 +68,8 @@ void value_run(struct value_search *value, const struct value_hooks *hooks);
 
 /* The rank-th best stroke; NULL beyond the last. Its record carries the exact outcome (potted, points, foul, hash). */
 const struct stroke *value_result(const struct value_search *value, int rank);
+/* The caller's name of a root. */
+int value_root_index(const struct value_search *value, int root);
 /* Simulations made since value_begin. */
 uint64_t value_sims(const struct value_search *value);
 

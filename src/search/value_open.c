@@ -172,6 +172,7 @@ double value_next_shot(struct value_search *v, struct value_worker *worker, cons
 	enum { NEXT_POTS = 3, NEXT_SPEEDS = 4, NEXT_FOLLOWS = 3 };
 	static const double speeds[NEXT_SPEEDS] = {0.8, 1.4, 2.2, 3.4};
 	int count = v->request.ball_count;
+	const struct setting from = {v->table, &v->model, ball, count, rules};
 	double best = estimate_value(&v->estimator, rules, ball, count);
 	struct pot pot[POTS_MAX];
 	struct record record;
@@ -190,7 +191,7 @@ double value_next_shot(struct value_search *v, struct value_worker *worker, cons
 				continue;
 			set_record(v, &opening, &aimed, &record);
 			worker->sims++;
-			if (!shot_play(&worker->work, v->table, &v->model, ball, count, rules, &record, &outcome) ||
+			if (!shot_play(&worker->work, &from, &record, &outcome) ||
 			    record.foul != 0 || record.points == 0)
 				continue;
 			double end = value_of_outcome(v, worker, &record, &outcome, false);

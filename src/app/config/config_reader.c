@@ -90,6 +90,12 @@ void config_reader_allowed(const struct config_key *key, char *out, size_t size)
 	case CONFIG_TEXT:
 		snprintf(out, size, "a text of %.0f to %.0f characters", key->min, key->max);
 		break;
+	case CONFIG_CHOICE: {
+		size_t n = 0;
+		for (int i = 0; key->choices[i] && n < size; i++)
+			n += (size_t)snprintf(out + n, size - n, "%s\"%s\"", i ? " or " : "", key->choices[i]);
+		break;
+	}
 	case CONFIG_NUMBERS:
 		snprintf(out, size, "%zu numbers %.9g to %.9g%s", key->size, key->min, key->max, unit);
 		break;
@@ -194,6 +200,18 @@ static int read_text(struct config_reader *reader, const config_setting_t *setti
 	return 0;
 }
 
+static int read_choice(struct config_reader *reader, const config_setting_t *setting, const struct config_key *key,
+		       int *out)
+{
+	const char *text = config_setting_get_string(setting);
+	for (int i = 0; text && key->choices[i]; i++)
+		if (strcmp(text, key->choices[i]) == 0) {
+			*out = i;
+			return 0;
+		}
+	return fail(reader, setting, key);
+}
+
 static int read_numbers(struct config_reader *reader, const config_setting_t *setting, const struct config_key *key,
 			double *out)
 {
@@ -242,6 +260,8 @@ static int read_key(struct config_reader *reader, const config_setting_t *settin
 		return read_flag(reader, setting, key, out);
 	case CONFIG_TEXT:
 		return read_text(reader, setting, key, out);
+	case CONFIG_CHOICE:
+		return read_choice(reader, setting, key, out);
 	case CONFIG_NUMBERS:
 		return read_numbers(reader, setting, key, out);
 	case CONFIG_SECTION:

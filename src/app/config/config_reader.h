@@ -12,6 +12,7 @@ enum config_type {
 	CONFIG_COUNT64, /* uint64_t */
 	CONFIG_FLAG,	/* bool */
 	CONFIG_TEXT,	/* char[size] */
+	CONFIG_CHOICE,	/* int: the place of the text among choices */
 	CONFIG_NUMBERS, /* size doubles in a row (a vec2 is two) */
 	CONFIG_SECTION, /* group of keys, offsets from the same base */
 	CONFIG_LIST	/* list of groups, each into an element of size bytes */
@@ -48,6 +49,7 @@ struct config_key {
 	const struct config_key *keys; /* SECTION, LIST */
 	bool optional;		       /* NUMBER, NUMBERS: may be missing, then `fallback` counts */
 	double fallback;	       /* in the file's unit */
+	const char *const *choices;    /* CHOICE: texts, NULL at the end */
 };
 
 struct config_reader {

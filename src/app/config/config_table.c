@@ -28,6 +28,10 @@
 	{                                                                                                              \
 		.name = key, .type = CONFIG_TEXT, .offset = at, RANGE(low, high), .size = (high) + 1                   \
 	}
+#define CHOICE(key, names, at)                                                                                         \
+	{                                                                                                              \
+		.name = key, .type = CONFIG_CHOICE, .offset = at, .choices = names                                     \
+	}
 #define NUMBERS(key, n, unit_, low, high, at)                                                                          \
 	{                                                                                                              \
 		.name = key, .type = CONFIG_NUMBERS, .unit = unit_, .offset = at, RANGE(low, high), .size = n          \
@@ -128,6 +132,9 @@ static const struct config_key material_keys[] = {
 	END,
 };
 
+/* In the order of enum plan_ranking. */
+static const char *const ranking_names[] = {"thesis", "success", "value", NULL};
+
 static const struct config_key profile_keys[] = {
 	TEXT("name", 1, 15, IN(cost_profile, name)),
 	NUMBER("w_distance", UNIT_NONE, 0, 100, IN(cost_profile, w_distance)),
@@ -146,9 +153,9 @@ static const struct config_key profile_keys[] = {
 	NUMBER("clearance", UNIT_MM, 0, 100, IN(cost_profile, clearance)),
 	NUMBER("cue_clearance", UNIT_MM, 0, 100, IN(cost_profile, cue_clearance)),
 	NUMBER("cue_room", UNIT_MM, 0, 2000, IN(cost_profile, cue_room)),
-	NUMBER("sigma_angle", UNIT_DEGREE, 0, 10, IN(cost_profile, sigma_angle)),
-	NUMBER("sigma_speed", UNIT_NONE, 0, 1, IN(cost_profile, sigma_speed)),
-	FLAG("rank_by_success", IN(cost_profile, rank_by_success)),
+	NUMBER("sigma_angle", UNIT_DEGREE, 0, 10, IN(cost_profile, error.angle)),
+	NUMBER("sigma_speed", UNIT_NONE, 0, 1, IN(cost_profile, error.speed)),
+	CHOICE("ranking", ranking_names, IN(cost_profile, ranking)),
 	FLAG("program_speed", IN(cost_profile, program_speed)),
 	WHOLE("aims", UNIT_NONE, 1, 9, IN(cost_profile, aims)),
 	FLAG("any_first", IN(cost_profile, any_first)),
