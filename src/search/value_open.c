@@ -19,7 +19,7 @@ static const struct {
 
 /* Simulations of one stroke: one whole, and the few short ones of the aim count as half. */
 static const double STROKE_SIMS = 1.5;
-static const double OPEN_SHARE = 0.35; /* of all simulations */
+static const double OPEN_SHARE = 0.25; /* of all simulations */
 
 static void set_record(const struct value_search *v, const struct opening *opening, const struct aimed *aimed,
 		       struct record *record)

@@ -5,7 +5,7 @@
 #include "search/value_state.h"
 
 /* Shares of all simulations for the rounds on estimates and for the second ply. */
-static const double RACE_SHARE = 0.25, REFINE_SHARE = 0.15, DEEP_SHARE = 0.3;
+static const double RACE_SHARE = 0.2, REFINE_SHARE = 0.15, DEEP_SHARE = 0.4;
 /* Simulations that searching the next shot takes: three pots, twelve strokes, aims counted half. */
 static const double NEXT_SIMS = 3 * 12 * 1.4;
 
@@ -168,9 +168,12 @@ void value_race(struct value_search *v)
 		field = field * 2 / 5;
 	}
 	refine(v);
+	/* the second ply by halving, too: half of its samples for many leaders, half for few */
 	double deep = DEEP_SHARE * (double)v->request.sims / NEXT_SIMS;
-	int leaders = deep >= 60 ? 6 : deep >= 30 ? 4 : 3;
-	int count = (int)(deep / leaders);
-	if (count >= LEAST_SAMPLES && !value_is_over(v))
-		round_of(v, leaders, count, true);
+	int leaders = deep >= 120 ? 12 : 4;
+	for (int i = 0; i < 2 && !value_is_over(v); i++, leaders /= 3) {
+		int count = (int)(deep / 2 / leaders);
+		if (count >= LEAST_SAMPLES - 1)
+			round_of(v, leaders, count, true);
+	}
 }
