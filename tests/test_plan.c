@@ -480,8 +480,8 @@ START_TEST(bad_profiles)
 	struct planner_def def = planner_def_default();
 	struct cost_profile *p = &def.profile;
 	double *positive[] = {&p->max_cut, &p->max_speed, &p->pocket_speed, &p->speed_step};
-	double *other[] = {&p->w_distance, &p->w_angle,	  &p->w_balls,	    &p->w_rails,   &p->ball_cost,
-			   &p->rail_cost,  &p->w_points,  &p->w_speed,	    &p->w_simulation, &p->clearance,
+	double *other[] = {&p->w_distance,    &p->w_angle,  &p->w_balls,     &p->w_rails,      &p->ball_cost,
+			   &p->rail_cost,     &p->w_points, &p->w_speed,     &p->w_simulation, &p->clearance,
 			   &p->cue_clearance, &p->cue_room, &p->error.angle, &p->error.speed};
 	static const int aims[] = {0, -1, 10, 1000};
 	struct planner *planner;

@@ -1,10 +1,10 @@
 #include "search/acceptance.h"
 
 enum { EVENTS = 40, HALVINGS = 7, PROBES = 9 };
-static const double ANGLE_STEP = 5 * M_PI / 180;		  /* rad, between the measured ways */
-static const double SPEED[ACCEPT_SPEEDS] = {0.5, 1.5, 3.5};	  /* m/s at the start of the way */
-static const double RUN_UP = 0.5;				  /* m before the pocket's centre */
-static const double SPREAD = 1.0;				  /* pocket radii to either side that are probed */
+static const double ANGLE_STEP = 5 * M_PI / 180;	    /* rad, between the measured ways */
+static const double SPEED[ACCEPT_SPEEDS] = {0.5, 1.5, 3.5}; /* m/s at the start of the way */
+static const double RUN_UP = 0.5;			    /* m before the pocket's centre */
+static const double SPREAD = 1.0;			    /* pocket radii to either side that are probed */
 
 /* One way into one pocket. */
 struct probe {

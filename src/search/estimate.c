@@ -9,7 +9,7 @@ static const double CUT_MIN_COS = 0.139; /* 82 degrees: thinner cuts are not est
 static const double COLOUR_POINTS = 5.3; /* mean of the colour that follows a red in a good visit */
 /* Share of what the average visit brings that a miss leaves to the opponent, and that a safety shot leaves. */
 static const double MISS_SHARE = 0.35, SAFE_SHARE = 0.06;
-static const double SNOOKERED = -2;  /* points: no ball on can be hit directly */
+static const double SNOOKERED = -2;   /* points: no ball on can be hit directly */
 static const double IN_HAND_FOUL = 0; /* points come with the foul itself */
 
 double within_chance(double half, double bias, double sigma)
@@ -138,9 +138,8 @@ static bool is_open(const struct estimator *e, const struct ball *ball, int coun
 {
 	double d = 2 * e->table->ball_radius;
 	vec2 at = ball[pot->ball].pos, ghost = vec2_madd(at, -d, pot->way);
-	uint32_t others = ~(1u << pot->ball | 1u << cue);
-	return segment_is_free(ball, count, others, at, pot->goal, d) &&
-	       segment_is_free(ball, count, others, ball[cue].pos, ghost, d);
+	const struct obstacles others = {ball, count, ~(1u << pot->ball | 1u << cue)};
+	return segment_is_free(&others, at, pot->goal, d) && segment_is_free(&others, ball[cue].pos, ghost, d);
 }
 
 static void insert_pot(struct pot *list, int *count, const struct pot *pot)
@@ -188,10 +187,11 @@ static bool can_hit(const struct estimator *e, const struct rules_state *rules, 
 	for (int i = 0; i < count; i++) {
 		if (!rules_ball_on(rules, ball, count, i))
 			continue;
+		const struct obstacles others = {ball, count, ~(1u << i | 1u << cue)};
 		vec2 across = vec2_perp(vec2_unit(vec2_sub(ball[i].pos, ball[cue].pos)));
 		for (int side = -1; side <= 1; side++) {
 			vec2 to = vec2_madd(ball[i].pos, 0.9 * side * d, across);
-			if (segment_is_free(ball, count, ~(1u << i | 1u << cue), ball[cue].pos, to, d))
+			if (segment_is_free(&others, ball[cue].pos, to, d))
 				return true;
 		}
 	}

@@ -14,7 +14,7 @@ struct estimator {
 	const struct table *table; /* borrowed */
 	struct player_error error;
 	struct acceptance acceptance;
-	double flow; /* chance that a shot of a visit under way succeeds, 0..1 */
+	double flow;		/* chance that a shot of a visit under way succeeds, 0..1 */
 	double going_on[4][16]; /* expected points of a visit under way, by enum rules_on and reds on the table */
 };
 
@@ -29,24 +29,24 @@ void estimator_set_error(struct estimator *estimator, const struct player_error 
 /* A direct pot. */
 struct pot {
 	int16_t ball, pocket;
-	vec2 way;	/* unit, of the object ball into the pocket */
-	vec2 goal;	/* m, the point of the pocket that it is sent to: the middle of what falls */
-	double angle;	/* rad, of the cue ball */
-	double gain;	/* how many times an error of the aim is larger as an error of the object ball's direction */
-	double half;	/* rad, half width of the object ball's directions that fall */
-	double chance;	/* 0..1 */
-	double brings;	/* points, its own and what may follow */
-	double costs;	/* points, of a miss */
-	double value;	/* points: chance * brings - (1 - chance) * costs */
-	double reach;	/* m, ways of both balls */
+	vec2 way;      /* unit, of the object ball into the pocket */
+	vec2 goal;     /* m, the point of the pocket that it is sent to: the middle of what falls */
+	double angle;  /* rad, of the cue ball */
+	double gain;   /* how many times an error of the aim is larger as an error of the object ball's direction */
+	double half;   /* rad, half width of the object ball's directions that fall */
+	double chance; /* 0..1 */
+	double brings; /* points, its own and what may follow */
+	double costs;  /* points, of a miss */
+	double value;  /* points: chance * brings - (1 - chance) * costs */
+	double reach;  /* m, ways of both balls */
 };
 
 /* The chance that a normal error of sigma, off by bias, stays within +-half. */
 double within_chance(double half, double bias, double sigma);
 
 /* The pots there are with a chance of at least least, best value first; at most POTS_MAX. */
-int estimate_pots(const struct estimator *estimator, const struct rules_state *rules, const struct ball *ball, int count,
-		  double least, struct pot pot[POTS_MAX]);
+int estimate_pots(const struct estimator *estimator, const struct rules_state *rules, const struct ball *ball,
+		  int count, double least, struct pot pot[POTS_MAX]);
 
 /* Value of the position to the player at the table. In hand: the best of some places in the D. */
 double estimate_value(const struct estimator *estimator, const struct rules_state *rules, const struct ball *ball,

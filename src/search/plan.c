@@ -22,7 +22,8 @@ static const double RANKING_SHARE = 0.2, TOLERANCE_SHARE = 0.05;
 /* The same for chains over balls and cushions, where shots are ranked by value. */
 static const double CHAIN_SHARE = 0.2;
 
-static const char *const ranking_names[] = {[RANK_THESIS] = "thesis", [RANK_SUCCESS] = "success", [RANK_VALUE] = "value"};
+static const char *const ranking_names[] = {
+	[RANK_THESIS] = "thesis", [RANK_SUCCESS] = "success", [RANK_VALUE] = "value"};
 
 const char *plan_ranking_name(enum plan_ranking ranking)
 {
@@ -87,10 +88,10 @@ static int take_memory(struct planner *planner)
 /* What the search takes for granted of a profile; false for NaN, too. */
 static bool profile_is_valid(const struct cost_profile *p)
 {
-	const double not_negative[] = {p->w_distance,	p->w_angle,	  p->w_balls,	    p->w_rails,	    p->ball_cost,
-				       p->rail_cost,	p->w_points,	  p->w_speed,	    p->w_simulation, p->clearance,
-				       p->cue_clearance, p->cue_room,	  p->error.angle,
-				       p->error.speed,	p->error.tip,	  p->error.elevation};
+	const double not_negative[] = {p->w_distance,	p->w_angle,	p->w_balls,	  p->w_rails,
+				       p->ball_cost,	p->rail_cost,	p->w_points,	  p->w_speed,
+				       p->w_simulation, p->clearance,	p->cue_clearance, p->cue_room,
+				       p->error.angle,	p->error.speed, p->error.tip,	  p->error.elevation};
 	bool valid = p->max_cut > 0 && p->max_cut <= M_PI / 2 && p->max_speed > 0 && p->max_speed <= SHOT_SPEED_MAX &&
 		     p->pocket_speed > 0 && isfinite(p->pocket_speed) && p->speed_step > 0 && p->aims >= 1 &&
 		     p->aims <= AIMS_MAX - 1;

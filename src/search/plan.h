@@ -31,21 +31,21 @@ bool plan_ranking_from_name(const char *name, enum plan_ranking *ranking);
 struct cost_profile {
 	char name[16];				      /* "thesis", "beginner", "professional" */
 	double w_distance, w_angle, w_balls, w_rails; /* weights of 4.20-4.32; 0 switches a term off */
-	double ball_cost, rail_cost;	 /* per ball struck, per cushion: 1/2 and 2/3 in the thesis' program */
-	double w_points, w_speed;	 /* weights of 4.103, both 0.5 */
-	double w_simulation;		 /* g of 4.104 */
-	double max_cut;			 /* rad, 87 degrees */
-	double max_speed;		 /* m/s, V_max of 4.102 and the limit of a start speed */
-	double pocket_speed;		 /* m/s, least speed at the pocket */
-	double speed_step;		 /* m/s between the tried start speeds */
-	double clearance;		 /* m over the diameter along a ball's way */
-	double cue_clearance;		 /* m beyond the radius beside the cue */
-	double cue_room;		 /* m behind the cue ball */
-	struct player_error error;	 /* how this player errs */
+	double ball_cost, rail_cost; /* per ball struck, per cushion: 1/2 and 2/3 in the thesis' program */
+	double w_points, w_speed;    /* weights of 4.103, both 0.5 */
+	double w_simulation;	     /* g of 4.104 */
+	double max_cut;		     /* rad, 87 degrees */
+	double max_speed;	     /* m/s, V_max of 4.102 and the limit of a start speed */
+	double pocket_speed;	     /* m/s, least speed at the pocket */
+	double speed_step;	     /* m/s between the tried start speeds */
+	double clearance;	     /* m over the diameter along a ball's way */
+	double cue_clearance;	     /* m beyond the radius beside the cue */
+	double cue_room;	     /* m behind the cue ball */
+	struct player_error error;   /* how this player errs */
 	int aims; /* 1: the middle of a pocket; 3, 5, ...: points across it too, for what the middle does not give */
 	enum plan_ranking ranking;
-	bool program_speed;   /* start speeds by 4.33 for every leg, as the thesis' program; false: both branches */
-	bool any_first;	      /* do not ask which ball is struck first, as that program; false: by the rules */
+	bool program_speed; /* start speeds by 4.33 for every leg, as the thesis' program; false: both branches */
+	bool any_first;	    /* do not ask which ball is struck first, as that program; false: by the rules */
 	bool keep_flukes; /* keep legal pots that are not the intended one, named by what falls, as that program does */
 };
 /* The constants of the thesis' program (errata.md, last tables). */
@@ -73,7 +73,7 @@ struct plan_request {
 	int tolerances; /* of so many of the best plans tolerance and success are found, 0..PLAN_MAX; costs some 40
 			   simulations a shot */
 	struct plan_budget budget;
-	bool has_error;		   /* error holds, not the profile's */
+	bool has_error; /* error holds, not the profile's */
 	struct player_error error;
 	uint64_t run; /* number by which planner_cancel() names this run, the caller's, rising from 1; 0: none can */
 };

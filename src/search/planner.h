@@ -30,7 +30,7 @@ struct planner {
 	struct results *results; /* one */
 	struct plan *plan;	 /* PLAN_MAX, what results point to */
 	struct frontier frontier;
-	struct crew *crew; /* NULL for SCHEME_BATCH */
+	struct crew *crew;	    /* NULL for SCHEME_BATCH */
 	struct value_search *value; /* NULL unless the profile ranks by value */
 	struct shown shown;
 

@@ -1,8 +1,8 @@
 #include "search/player_error.h"
 
-static const double TIP_MAX = 0.9;		      /* of the radius: beyond it the ball is missed */
+static const double TIP_MAX = 0.9;		     /* of the radius: beyond it the ball is missed */
 static const double ELEVATION_MAX = 80 * M_PI / 180; /* rad */
-static const double SPEED_MIN = 0.01;		      /* m/s */
+static const double SPEED_MIN = 0.01;		     /* m/s */
 
 static double polynomial(const double *c, int count, double x)
 {
@@ -14,9 +14,9 @@ static double polynomial(const double *c, int count, double x)
 
 double normal_quantile(double p)
 {
-	static const double a[] = {-3.969683028665376e+01, 2.209460984245205e+02, -2.759285104469687e+02,
+	static const double a[] = {-3.969683028665376e+01, 2.209460984245205e+02,  -2.759285104469687e+02,
 				   1.383577518672690e+02,  -3.066479806614716e+01, 2.506628277459239e+00};
-	static const double b[] = {-5.447609879822406e+01, 1.615858368580409e+02, -1.556989798598866e+02,
+	static const double b[] = {-5.447609879822406e+01, 1.615858368580409e+02,  -1.556989798598866e+02,
 				   6.680131188771972e+01,  -1.328068155288572e+01, 1};
 	static const double c[] = {-7.784894002430293e-03, -3.223964580411365e-01, -2.400758277161838e+00,
 				   -2.549732539343734e+00, 4.374664141464968e+00,  2.938163982698783e+00};
@@ -82,7 +82,6 @@ struct shot player_error_apply(const struct player_error *error, const struct sh
 		out.side *= TIP_MAX / off;
 		out.follow *= TIP_MAX / off;
 	}
-	out.elevation =
-		clamp(shot->elevation + error->elevation_bias + error->elevation * d->z[4], 0, ELEVATION_MAX);
+	out.elevation = clamp(shot->elevation + error->elevation_bias + error->elevation * d->z[4], 0, ELEVATION_MAX);
 	return out;
 }

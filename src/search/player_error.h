@@ -7,10 +7,10 @@
 /* 1 sigma and mean (bias) of each. Computer-pool tournaments play with 0.125 degrees, 0.075 m/s, 0.5 mm of the tip and
  * 0.1 degrees of elevation (Archibald, Altman, Shoham 2009). */
 struct player_error {
-	double angle, angle_bias;	  /* rad, of the direction; bias counter-clockwise */
-	double speed, speed_bias;	  /* share of the speed */
+	double angle, angle_bias;	    /* rad, of the direction; bias counter-clockwise */
+	double speed, speed_bias;	    /* share of the speed */
 	double tip, side_bias, follow_bias; /* share of the radius; one sigma for both ways of the tip */
-	double elevation, elevation_bias; /* rad */
+	double elevation, elevation_bias;   /* rad */
 };
 
 enum { ERROR_DIMENSIONS = 5 };

@@ -64,8 +64,8 @@ void rank_solutions(struct planner *planner)
 {
 	struct solutions *list = results_best(planner->results);
 	bool by_success = planner->def.profile.ranking == RANK_SUCCESS;
-	int wanted =
-		by_success && planner->task.request->tolerances < RANKED_MAX ? RANKED_MAX : planner->task.request->tolerances;
+	int wanted = by_success && planner->task.request->tolerances < RANKED_MAX ? RANKED_MAX
+										  : planner->task.request->tolerances;
 	struct ranking ranking = {.planner = planner, .count = 0};
 	if (!list)
 		return;

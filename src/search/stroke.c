@@ -1,10 +1,10 @@
 #include "search/stroke.h"
 
 enum { STEPS = 6, EVENTS = 12 };
-static const double GOOD = 2e-4;	/* m beside the goal that is good enough */
-static const double PROBE = 1e-4;	/* rad, first step of the secant when the slope is unknown */
-static const double ARRIVAL = 0.12;	/* m/s, least speed at the pocket */
-static const double TURN_MAX = 0.12;	/* rad, further than that from geometry it is another shot */
+static const double GOOD = 2e-4;     /* m beside the goal that is good enough */
+static const double PROBE = 1e-4;    /* rad, first step of the secant when the slope is unknown */
+static const double ARRIVAL = 0.12;  /* m/s, least speed at the pocket */
+static const double TURN_MAX = 0.12; /* rad, further than that from geometry it is another shot */
 
 /* The object ball's velocity just after the cue ball has met it. False when it is not met first. */
 static bool object_velocity(const struct estimator *e, const struct model *model, const struct ball pair[2],

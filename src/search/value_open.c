@@ -45,8 +45,7 @@ bool value_try(struct value_search *v, struct value_worker *worker, const struct
 	if (!stroke_aim(&v->estimator, &v->model, &root->ball[v->request.cue], &root->ball[opening->pot.ball],
 			&opening->pot, &aimed))
 		return false;
-	*out = (struct stroke){
-		.root = opening->root, .opening = (int)(opening - v->opening), .chance = aimed.chance};
+	*out = (struct stroke){.root = opening->root, .opening = (int)(opening - v->opening), .chance = aimed.chance};
 	set_record(v, opening, &aimed, &out->record);
 	if (!value_play(v, worker, opening->root, &out->record, &outcome) || out->record.foul != 0 ||
 	    !shot_is_as_meant(&out->record))
@@ -77,8 +76,7 @@ static int open_pot(struct value_search *v, struct value_worker *worker, const s
 	for (int s = step - 1; s < SPEED_COUNT && SPEEDS[s] <= v->request.max_speed; s += step)
 		for (int f = 0; f < grids[grid].follows; f++)
 			for (int side = 0; side < grids[grid].sides; side++) {
-				struct shot shot = {
-					.speed = SPEEDS[s], .follow = FOLLOWS[f], .side = SIDES[side]};
+				struct shot shot = {.speed = SPEEDS[s], .follow = FOLLOWS[f], .side = SIDES[side]};
 				struct stroke stroke;
 				if (!value_is_over(v) && value_try(v, worker, opening, &shot, &stroke))
 					keep(list, &count, VALUE_PER_POT, &stroke);
@@ -111,7 +109,8 @@ static void find_pots(struct value_search *v)
 	for (int r = 0; r < v->request.root_count; r++) {
 		const struct value_root *root = &v->request.root[r];
 		struct pot pot[POTS_MAX];
-		int pots = estimate_pots(&v->estimator, &root->rules, root->ball, v->request.ball_count, CHANCE_MIN, pot);
+		int pots =
+			estimate_pots(&v->estimator, &root->rules, root->ball, v->request.ball_count, CHANCE_MIN, pot);
 		for (int i = 0; i < pots; i++)
 			if (root->wanted >> pot[i].ball & 1)
 				add_opening(v, &pot[i], r);
@@ -191,8 +190,8 @@ double value_next_shot(struct value_search *v, struct value_worker *worker, cons
 				continue;
 			set_record(v, &opening, &aimed, &record);
 			worker->sims++;
-			if (!shot_play(&worker->work, &from, &record, &outcome) ||
-			    record.foul != 0 || record.points == 0)
+			if (!shot_play(&worker->work, &from, &record, &outcome) || record.foul != 0 ||
+			    record.points == 0)
 				continue;
 			double end = value_of_outcome(v, worker, &record, &outcome, false);
 			found = fmax(found, aimed.chance * end - (1 - aimed.chance) * pot[i].costs);

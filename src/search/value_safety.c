@@ -56,7 +56,8 @@ static void name_pot(const struct value_search *v, struct record *record)
 	const struct value_root *root = &v->request.root[0];
 	for (int i = 0; i < record->potted_count && record->points > 0; i++) {
 		int ball = record->potted[i].ball;
-		if (!rules_ball_on(&root->rules, root->ball, v->request.ball_count, ball) || !(root->wanted >> ball & 1))
+		if (!rules_ball_on(&root->rules, root->ball, v->request.ball_count, ball) ||
+		    !(root->wanted >> ball & 1))
 			continue;
 		record->target = (int16_t)ball;
 		record->pocket = record->potted[i].pocket;

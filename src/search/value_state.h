@@ -8,14 +8,14 @@
 #include "search/value.h"
 
 enum {
-	VALUE_POTS = 32,	/* pots that are opened into strokes */
-	VALUE_PER_POT = 10,	/* strokes kept of each */
-	VALUE_ADDED = 64,	/* shots that the caller has found */
-	VALUE_SAFETIES = 48,	/* contact shots kept */
-	VALUE_REFINED = 48,	/* neighbours of the leaders */
+	VALUE_POTS = 32,     /* pots that are opened into strokes */
+	VALUE_PER_POT = 10,  /* strokes kept of each */
+	VALUE_ADDED = 64,    /* shots that the caller has found */
+	VALUE_SAFETIES = 48, /* contact shots kept */
+	VALUE_REFINED = 48,  /* neighbours of the leaders */
 	VALUE_STROKES = VALUE_POTS * VALUE_PER_POT + VALUE_ADDED + VALUE_SAFETIES + VALUE_REFINED,
-	VALUE_SAMPLES = 512,	/* points of the player's error */
-	VALUE_ACROSS = 14	/* speeds or directions of contact shots tried at each */
+	VALUE_SAMPLES = 512, /* points of the player's error */
+	VALUE_ACROSS = 14    /* speeds or directions of contact shots tried at each */
 };
 
 /* A pot of one of the roots, to be opened. */

@@ -19,7 +19,7 @@ struct match_setting {
 	struct model model;	   /* what really happens */
 	struct player_error error; /* how the player really errs */
 	uint64_t seed;
-	bool from_break; /* false: a random position in the middle of a frame */
+	bool from_break;	      /* false: a random position in the middle of a frame */
 	double (*now)(void *context); /* s, for the time that proposals take; NULL: not measured */
 	void *now_context;
 };
@@ -27,10 +27,10 @@ struct match_setting {
 /* What was counted, over visits or frames; sums, so that parts can be added. */
 struct match_count {
 	int visits, shots, pots_proposed, pots_made, fouls, safeties, no_answer;
-	double points, points2;	     /* of visits: sum, and sum of squares */
-	double predicted, seconds;   /* sums over pots; over shots */
-	double brier;		     /* sum of squared errors of the predicted chance */
-	double expected;	     /* points: sum over visits of what the first proposal promised */
+	double points, points2;	   /* of visits: sum, and sum of squares */
+	double predicted, seconds; /* sums over pots; over shots */
+	double brier;		   /* sum of squared errors of the predicted chance */
+	double expected;	   /* points: sum over visits of what the first proposal promised */
 	double decile_predicted[MATCH_DECILES];
 	int decile_made[MATCH_DECILES], decile_count[MATCH_DECILES];
 };

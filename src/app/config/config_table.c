@@ -155,6 +155,7 @@ static const struct config_key profile_keys[] = {
 	NUMBER("cue_room", UNIT_MM, 0, 2000, IN(cost_profile, cue_room)),
 	NUMBER("sigma_angle", UNIT_DEGREE, 0, 10, IN(cost_profile, error.angle)),
 	NUMBER("sigma_speed", UNIT_NONE, 0, 1, IN(cost_profile, error.speed)),
+	NUMBER_OR(0, "sigma_tip", UNIT_NONE, 0, 0.5, IN(cost_profile, error.tip)),
 	CHOICE("ranking", ranking_names, IN(cost_profile, ranking)),
 	FLAG("program_speed", IN(cost_profile, program_speed)),
 	WHOLE("aims", UNIT_NONE, 1, 9, IN(cost_profile, aims)),
