@@ -393,7 +393,7 @@ START_TEST(time_is_kept_for_ranking)
 	struct planner *planner;
 	struct planner_def def = planner_def_default();
 	def.table = &table;
-	def.profile.rank_by_success = _i;
+	def.profile.ranking = _i ? RANK_SUCCESS : RANK_THESIS;
 	def.profile.pocket_speed = 0.2;
 	def.now = clock_steps;
 	def.now_context = &time;
