@@ -35,6 +35,8 @@ APP_COMMANDS := cmd cmd_calibrate cmd_demo cmd_detect cmd_plan cmd_run cmd_simul
 APP_PROCESS += event_log private_bus
 APP_VIRTUAL += judge_match
 APP_COMMANDS += cmd_judge cmd_judge_replay
+APP_VIRTUAL += judge
+APP_COMMANDS += cmd_judge_run
 # programs: src/app/programs/main_NAME.c becomes build/NAME
 PROGRAMS := billiard billiard-vision billiard-planner billiard-infinity billiard-projector billiard-table
 # tests/test_NAME.c each; tests/NAME.c shared by them
@@ -46,6 +48,7 @@ TESTS := signature message_check animation fsm stability plan_message controller
 TESTS += shipped
 TEST_SHARED := harness brute_force bus_fixture service_fixture planner_client random poly_judge scenes search_scenes shot_compare thesis_lists vision_rig vision_scene
 TESTS += event_log judge_match
+TESTS += judge
 # tests that are scripts: tests/NAME.sh, called with the build folder
 TEST_SCRIPTS := cli demo planner units build borders
 # tests/NAME.c: programs of their own that a test script compiles

@@ -95,5 +95,7 @@ int cmd_judge(int argc, char **argv)
 		return status;
 	if (options.replay)
 		return cmd_judge_replay(&config, &options, argc - optind, argv + optind);
-	return cmd_usage(argv[0], "only --replay is there yet");
+	if (options.live)
+		return cmd_judge_live(&config, &options);
+	return cmd_judge_logs(&config, &options, argc - optind, argv + optind);
 }

@@ -16,4 +16,9 @@ struct judge_options {
  * differs from the log's last TRUTH. Exit status. */
 int cmd_judge_replay(const struct config *config, const struct judge_options *options, int count, char **path);
 
+/* Judges each log, a line each. Exit status. */
+int cmd_judge_logs(const struct config *config, const struct judge_options *options, int count, char **path);
+/* Judges what is on the bus until it is stopped. Exit status. */
+int cmd_judge_live(const struct config *config, const struct judge_options *options);
+
 #endif

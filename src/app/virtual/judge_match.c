@@ -5,8 +5,8 @@
 
 #include "app/process/ball_message.h"
 
-/* How near a real ball of its colour a believed one lies that is its double: two tracks of one ball are pushed a diameter
- * apart before they are asked for. In reaches. */
+/* How near a real ball a believed one lies that is its double: two tracks of one ball are pushed a diameter apart before they
+ * are asked for. In reaches. */
 static const double DOUBLE_REACH = 1.25;
 
 void judge_position_from(struct judge_position *out, const billiard_ball_t *ball, int count)
@@ -48,8 +48,7 @@ static bool nearest_pair(const struct judge_position *real, const struct judge_p
 static bool is_double(const struct judge_position *real, const struct judge_position *believed, int k, double reach)
 {
 	for (int i = 0; i < real->count; i++)
-		if (real->ball[i].colour == believed->ball[k].colour &&
-		    distance(real, i, believed, k) < DOUBLE_REACH * reach)
+		if (distance(real, i, believed, k) < DOUBLE_REACH * reach)
 			return true;
 	return false;
 }

@@ -24,7 +24,7 @@ struct judge_match {
 	int believed_of[BALL_MAX]; /* by real ball */
 	int missing;		   /* real balls that nobody believes in */
 	int extra;		   /* believed balls that are not there */
-	int doubles;		   /* those of extra that lie at a real ball of their colour: it is seen twice */
+	int doubles;		   /* those of extra that lie at a real ball, of whatever colour: it is seen twice */
 	int colour_wrong;	   /* pairs of different colours */
 	double max_error;	   /* m, of the pairs, 0 when there is none */
 };
