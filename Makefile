@@ -62,7 +62,7 @@ BENCH_SHARED := report plain_sim plain_sim_long vision_eval vision_eval_photos v
 FUZZERS := position config shot_file colours image bus search controller
 FUZZ_SECONDS ?= 20
 LCM_TYPES := animation_t ball_t command_t draw_list_t draw_item_t image_t keyframe_t plan_t plan_entry_t plan_shot_t \
-	plan_request_t status_t metric_t table_state_t
+	plan_request_t status_t metric_t table_state_t vision_doubt_t
 
 # ---- flags -----------------------------------------------------------------------------------------------------------
 

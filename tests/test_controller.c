@@ -13,6 +13,7 @@
 #include "app/process/bus.h"
 #include "app/process/message_table.h"
 #include "harness.h"
+#include "vision/vision.h"
 
 /* The controller fed with messages as they come from the bus; nothing else is real. 30 frames a second. */
 enum { FRAME_US = 33333, MANY = 60 };
@@ -181,6 +182,55 @@ START_TEST(a_resting_table_is_asked_for_once)
 	struct plan_request r;
 	char err[96];
 	ck_assert_msg(plan_request_from_message(&r, &c.request, &config.table, err, sizeof err) == 0, "%s", err);
+}
+END_TEST
+
+/* One frame with vision's doubts before it: the table's, and ball i's. */
+static void doubtful_frame(int8_t doubt, int i)
+{
+	billiard_vision_doubt_t message = {
+		.utime = state.utime + FRAME_US, .doubt = doubt, .ball_count = state.ball_count};
+	message.ball_doubt[i] = doubt & (DOUBT_PLACE | DOUBT_COLOUR | DOUBT_HIDDEN);
+	controller_doubt(&c, &message);
+	frame();
+}
+
+/* What vision doubts is not asked for; when it does not any more, it is, once. */
+START_TEST(a_position_in_doubt_is_not_asked_for)
+{
+	static const int8_t wrong[] = {DOUBT_PLACE, DOUBT_HIDDEN, DOUBT_UNJUDGED};
+	for (int k = 0; k < 3; k++) {
+		setup();
+		for (int i = 0; i < MANY; i++)
+			doubtful_frame(wrong[k], 1);
+		ck_assert_int_eq(requests, 0);
+		for (int i = 0; i < MANY; i++)
+			doubtful_frame(0, 1);
+		ck_assert_int_eq(requests, 1);
+	}
+	/* A red that may be brown is a ball to be potted where any is; the cue ball must be sure. */
+	setup();
+	config.infinity.rules = false;
+	for (int i = 0; i < MANY; i++)
+		doubtful_frame(DOUBT_COLOUR, 0);
+	ck_assert_int_eq(requests, 0);
+	for (int i = 0; i < MANY; i++)
+		doubtful_frame(DOUBT_COLOUR, 1);
+	ck_assert_int_eq(requests, 1);
+	setup();
+	config.infinity.rules = true;
+	for (int i = 0; i < MANY; i++)
+		doubtful_frame(DOUBT_COLOUR, 1);
+	ck_assert_int_eq(requests, 0);
+	/* Doubts that got lost on the way are doubts; a vision that never told any has none. */
+	setup();
+	doubtful_frame(0, 0);
+	for (int i = 0; i < MANY; i++)
+		frame();
+	ck_assert_int_eq(requests, 0);
+	setup();
+	frames(MANY);
+	ck_assert_int_eq(requests, 1);
 }
 END_TEST
 
@@ -638,6 +688,7 @@ Suite *test_suite(void)
 	TCase *way = tcase_create("proposals");
 	tcase_add_checked_fixture(way, setup, NULL);
 	tcase_add_test(way, a_resting_table_is_asked_for_once);
+	tcase_add_test(way, a_position_in_doubt_is_not_asked_for);
 	tcase_add_test(way, an_answer_is_drawn_and_stays);
 	tcase_add_test(way, a_shot_takes_it_off_and_asks_anew);
 	tcase_add_test(way, motion_while_planning_cancels);

@@ -8,7 +8,7 @@
 enum { TRACK_MAX = 40 };
 
 /* Confidence of a place from which on it is believed: no ball that was right has been seen with less. */
-static const double TRACK_SURE = 0.6;
+static const double TRACK_SURE = 0.55;
 
 struct track {
 	int id;		      /* >= 1; 0: unused */

@@ -15,7 +15,7 @@
 static const double OCCLUDED_CELLS = 2.5; /* cells full of something that is no ball: more than a stain */
 static const double OCCLUDED_SHARE = 0.2; /* of a cell; less is lines and the edge of the bed */
 static const double BUMP_SHARE = 0.5;	  /* of all cells changed at once: the camera may have been bumped */
-static const double CERTAIN = 0.9;	  /* of a colour, from which on it is believed */
+static const double CERTAIN = 0.7;	  /* of a colour, from which on it is believed */
 static const double GAP = 0.1;		  /* s without a frame: what moves may be anywhere */
 static const double LIGHT_FACTOR = 2, LIGHT_FLOOR = 24; /* all cells differ by that much: other light; 1/16 level */
 enum { STILL_FRAMES = 3 };				/* without movement until the table rests */
@@ -184,6 +184,7 @@ static void report_doubt(struct vision_result *r, bool judged)
 		cue = cue || b->colour == COLOUR_WHITE;
 		b->doubt |= b->confidence < TRACK_SURE ? DOUBT_PLACE : 0;
 		b->doubt |= b->colour == COLOUR_UNKNOWN || b->certainty < CERTAIN ? DOUBT_COLOUR : 0;
+		b->place = b->confidence;
 		b->confidence *= b->certainty;
 		r->doubt |= b->doubt;
 	}

@@ -51,6 +51,7 @@ struct vision_ball {
 	vec2 px;  /* image of the centre, pixels of the frame */
 	enum ball_colour colour;
 	double confidence;  /* 0..1: of the place times of the colour */
+	double place;	    /* 0..1: of the place alone */
 	double certainty;   /* 0..1: of the colour alone */
 	int doubt;	    /* of enum vision_doubt */
 	int track;	    /* identity over frames, >= 1; 0 from a single frame */

@@ -9,6 +9,7 @@
 #include "app/planner/plan_check.h"
 #include "app/light/animation.h"
 #include "app/planner/plan_message.h"
+#include "vision/vision.h"
 
 static const double SETTLE_MAX = 0.006; /* m a ball may be moved to take camera errors out of a layout */
 static const double NEW_LAYOUT = 0.003; /* m a ball must lie elsewhere for a new proposal */
@@ -221,6 +222,38 @@ static void on_verdict(struct controller *c, enum stability_verdict verdict, dou
 	}
 }
 
+void controller_doubt(struct controller *c, const billiard_vision_doubt_t *doubt)
+{
+	c->doubt = *doubt;
+}
+
+/* A colour matters when the rules are played, and the cue ball's always. */
+static bool colour_matters(const struct controller *c, const billiard_table_state_t *state)
+{
+	bool matters = c->config->infinity.rules;
+	for (int i = 0; i < state->ball_count && i < c->doubt.ball_count; i++)
+		matters =
+			matters || ((c->doubt.ball_doubt[i] & DOUBT_COLOUR) && state->balls[i].colour == COLOUR_WHITE);
+	return matters;
+}
+
+/* Why the position is not to be planned for although nothing moves; NULL: no reason. A vision that tells its doubts tells
+ * them for every frame: where they are missing they were lost. */
+static const char *doubted(const struct controller *c, const billiard_table_state_t *state)
+{
+	if (c->doubt.utime == 0)
+		return NULL;
+	if (c->doubt.utime != state->utime || (c->doubt.doubt & DOUBT_UNJUDGED))
+		return "looking again";
+	if (c->doubt.doubt & DOUBT_PLACE)
+		return "a ball is not seen clearly";
+	if (c->doubt.doubt & DOUBT_HIDDEN)
+		return "a ball is hidden";
+	if ((c->doubt.doubt & DOUBT_COLOUR) && colour_matters(c, state))
+		return "a ball's colour is not sure";
+	return NULL;
+}
+
 bool controller_state(struct controller *c, const billiard_table_state_t *state, double now)
 {
 	struct layout layout;
@@ -231,6 +264,11 @@ bool controller_state(struct controller *c, const billiard_table_state_t *state,
 	c->last_frame = state->utime;
 	bool seen = state->calibration != 0;
 	enum stability_verdict verdict = stability_frame(&c->stability, seen ? &layout : NULL, state->occluded != 0);
+	const char *doubt = verdict == STABILITY_STABLE ? doubted(c, state) : NULL;
+	if (doubt) {
+		verdict = STABILITY_UNSURE;
+		note(c, doubt);
+	}
 	if (!seen) {
 		char reason[sizeof state->reason];
 		text_get(reason, sizeof reason, state->reason, sizeof state->reason);

@@ -12,6 +12,7 @@
 #include "lcmtypes/billiard_plan_request_t.h"
 #include "lcmtypes/billiard_plan_t.h"
 #include "lcmtypes/billiard_table_state_t.h"
+#include "lcmtypes/billiard_vision_doubt_t.h"
 #include "search/rules.h"
 
 /* What is to be sent after a call; the caller sends and clears the flags. */
@@ -27,9 +28,10 @@ struct controller {
 	struct layout seen;  /* of the last frame that could be used */
 	struct layout asked; /* what the present request was made for */
 	bool has_asked;
-	int64_t last_frame;  /* us, to tell outdated frames */
-	char note[96];	     /* why there is no proposal */
-	char drawn_note[96]; /* what of it is on the table */
+	int64_t last_frame;	       /* us, to tell outdated frames */
+	billiard_vision_doubt_t doubt; /* the newest; utime 0: vision tells none */
+	char note[96];		       /* why there is no proposal */
+	char drawn_note[96];	       /* what of it is on the table */
 	struct rules_state rules;
 	struct draw_options options;
 	bool animate;
@@ -48,6 +50,8 @@ struct controller {
 void controller_init(struct controller *c, const struct config *config);
 /* Messages that passed message_check(); plans are held against the table here (plan_check()). Each returns false when the message is outdated
  * or not acceptable; now: s, monotonic. */
+/* What vision doubts of the state that comes next. */
+void controller_doubt(struct controller *c, const billiard_vision_doubt_t *doubt);
 bool controller_state(struct controller *c, const billiard_table_state_t *state, double now);
 bool controller_plan(struct controller *c, const billiard_plan_t *plan, double now);
 bool controller_command(struct controller *c, const billiard_command_t *command, double now);

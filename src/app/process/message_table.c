@@ -10,6 +10,7 @@
 #include "lcmtypes/billiard_plan_t.h"
 #include "lcmtypes/billiard_status_t.h"
 #include "lcmtypes/billiard_table_state_t.h"
+#include "lcmtypes/billiard_vision_doubt_t.h"
 #include "physics/event.h"
 #include "physics/table.h"
 
@@ -70,6 +71,16 @@ static const struct message_member table_state[] = {
 	PARTS(billiard_table_state_t, balls, "ball_count", message_ball),
 };
 const struct message_table message_table_state = TABLE(table_state);
+
+static const struct message_member vision_doubt[] = {
+	ONE(billiard_vision_doubt_t, utime, UTIME),
+	ONE(billiard_vision_doubt_t, doubt, 0.0, 31.0),
+	COUNT(billiard_vision_doubt_t, ball_count, ball_doubt, 0.0),
+	MANY(billiard_vision_doubt_t, ball_doubt, "ball_count", 0.0, 31.0),
+	MANY(billiard_vision_doubt_t, place, "ball_count", 0.0, 1.0),
+	MANY(billiard_vision_doubt_t, certainty, "ball_count", 0.0, 1.0),
+};
+const struct message_table message_vision_doubt = TABLE(vision_doubt);
 
 static const struct message_member image[] = {
 	ONE(billiard_image_t, utime, UTIME),

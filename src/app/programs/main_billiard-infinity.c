@@ -64,6 +64,13 @@ static void flush(struct infinity *p)
 	process_state(&p->process, "%s", fsm_state_name(p->controller.fsm.state));
 }
 
+static bool on_doubt(void *context, const void *message)
+{
+	struct infinity *p = context;
+	controller_doubt(&p->controller, message);
+	return true;
+}
+
 static bool on_table_state(void *context, const void *message)
 {
 	struct infinity *p = context;
@@ -120,7 +127,9 @@ static int setup(struct infinity *p, const struct process_options *options)
 	controller_init(&p->controller, &p->config);
 	p->process.describe = describe;
 	p->process.context = p;
-	if ((r = bus_subscribe(p->process.bus, &(struct bus_subscription){"TABLE_STATE", &bus_table_state, BUS_EACH,
+	if ((r = bus_subscribe(p->process.bus, &(struct bus_subscription){"TABLE_DOUBT", &bus_vision_doubt, BUS_EACH,
+									  on_doubt, p})) < 0 ||
+	    (r = bus_subscribe(p->process.bus, &(struct bus_subscription){"TABLE_STATE", &bus_table_state, BUS_EACH,
 									  on_table_state, p})) < 0 ||
 	    (r = bus_subscribe(p->process.bus, &(struct bus_subscription){"PLAN", &bus_plan, BUS_EACH, on_plan, p})) <
 		    0 ||

@@ -27,6 +27,7 @@ struct vision_process {
 	struct byte_buffer jpeg;
 	struct vision_result result;
 	billiard_table_state_t state;
+	billiard_vision_doubt_t doubt;
 	int64_t last_camera; /* us, of the last CAMERA message */
 	int64_t last_frame;  /* us, of the last frame, by the source's clock */
 	double last_arrival; /* s, monotonic, when it came */
@@ -41,7 +42,7 @@ struct vision_process {
 /* ---- one frame ------------------------------------------------------------------------------------------------------ */
 
 /* The most certain balls first, as far as the message has room. */
-static void fill_balls(billiard_table_state_t *out, const struct vision_result *result)
+static void fill_balls(billiard_table_state_t *out, billiard_vision_doubt_t *doubt, const struct vision_result *result)
 {
 	bool taken[VISION_BALL_MAX] = {false};
 	for (out->ball_count = 0; out->ball_count < BALL_MAX && out->ball_count < result->ball_count;
@@ -57,6 +58,9 @@ static void fill_balls(billiard_table_state_t *out, const struct vision_result *
 		billiard_ball_t *message = &out->balls[out->ball_count];
 		ball_to_message(message, &ball, "", b->track);
 		message->confidence = b->confidence;
+		doubt->ball_doubt[out->ball_count] = (int8_t)b->doubt;
+		doubt->certainty[out->ball_count] = b->certainty;
+		doubt->place[out->ball_count] = b->place;
 	}
 }
 
@@ -73,7 +77,10 @@ static void publish_state(struct vision_process *p, int64_t utime, int64_t seq)
 		.residual_px = p->result.residual_px,
 	};
 	text_set(s->reason, sizeof s->reason, p->result.reason);
-	fill_balls(s, &p->result);
+	p->doubt = (billiard_vision_doubt_t){.utime = utime, .doubt = (int8_t)p->result.doubt};
+	fill_balls(s, &p->doubt, &p->result);
+	p->doubt.ball_count = s->ball_count;
+	bus_publish(p->process.bus, "TABLE_DOUBT", &bus_vision_doubt, &p->doubt);
 	bus_publish(p->process.bus, "TABLE_STATE", &bus_table_state, s);
 	p->latency = 1e-6 * (double)s->latency_us;
 }
