@@ -25,13 +25,13 @@ SEARCH := acceptance budget candidate cost crew estimate export figures frontier
 VISION := calibration camera colour detector fit linear marker_edges outline pose reason scan scan_changes scan_cloth scan_copy scan_marks scan_place seeds stabilise stages track vision
 VISION_CV := capture_cv image_io_cv markers_cv marker_image_cv
 # app: what the programs share, room by room
-APP_PROCESS := ball_message bus clock frame_slot frame_source message_check message_table process supervisor text
+APP_PROCESS := ball_message bus clock frame_slot frame_source message_check message_table options process supervisor text
 APP_CONFIG := config config_reader config_table config_vision text_file save position shot_file colour_file
 APP_CONTROL := fsm stability controller
 APP_LIGHT := animation draw draw_field draw_path draw_proposal keyframe picture render window
 APP_PLANNER := plan_check plan_message planner_service request_message
 APP_VIRTUAL := table_scene table_camera table_camera_ball player
-APP_COMMANDS := cmd cmd_calibrate cmd_demo cmd_detect cmd_plan cmd_run cmd_simulate cmd_status match overlay plot
+APP_COMMANDS := cmd cmd_calibrate cmd_demo cmd_detect cmd_plan cmd_run cmd_simulate cmd_status match overlay plot cmd_control status_listen status_print
 APP_PROCESS += event_log private_bus
 APP_VIRTUAL += judge_match
 APP_COMMANDS += cmd_judge cmd_judge_replay
@@ -41,7 +41,7 @@ APP_COMMANDS += cmd_judge_run
 PROGRAMS := billiard billiard-vision billiard-planner billiard-infinity billiard-projector billiard-table
 # tests/test_NAME.c each; tests/NAME.c shared by them
 TESTS := signature message_check animation fsm stability plan_message controller planner_service planner_bus bus process supervisor frame_source services loop replay \
-	config position save cmd plot draw render player table_camera contact_real contact_recorded shot_file \
+	config position save options cmd status plot draw render player table_camera contact_real contact_recorded shot_file \
 	rules cost geometry frontier pool scheme candidate plan plan_thesis plan_hard plan_complete tolerance refine solutions request \
 	ball bed contact predict event inverse model motion queue roots sim sim_hard table trace \
 	calibration camera pose scan fit colour stabilise image_io capture stages track vision vision_photos

@@ -63,7 +63,41 @@ refused 'unrecognized option' --dance
 for command in $("$billiard" --help | sed -n 's/^  \([a-z]*\)  *.*/\1/p'); do
 	works "usage: billiard $command" "$command" --help
 	refused 'unrecognized option' "$command" --dance
+	works '^\.SH OPTIONS' help --man "$command"
+	works '^--help$' help --complete "$command"
+	"$billiard" "$command" --help | grep -oE -- '--[a-z-]+ ' | sort -u >"$folder/listed"
+	"$billiard" help --complete "$command" | grep -- -- | sed 's/$/ /' | sort -u | cmp -s - "$folder/listed"
+	result $? "help and completion know the same options of $command"
 done
+works 'billiard\\-plan (1)' help --man
+works '^usage: billiard plan' help plan
+refused 'unknown command "dance"' help dance
+# Words that are too many, numbers with something behind them.
+for command in run status demo; do
+	refused 'unexpected argument "now"' "$command" now
+done
+refused 'at most one argument' control seek 1 2
+refused -- '--shots: found "5x", allowed a whole number 1 to 1000' demo --shots 5x
+refused -- '--seconds: found "0.5abc", allowed a number 0.001 to 3600' status --seconds 0.5abc
+refused 'animation-seek: found "5x", wanted seconds' control animation-seek 5x
+refused 'cancel: found "1x", wanted the id' control cancel 1x
+refused 'pause: found "now", wanted no argument' control pause now
+refused 'no command has the name "dance"' control dance
+
+# ---- run: one at a time on a bus
+sed '/^services = (/,$d' config/thesis-table.conf >"$folder/none.conf"
+echo 'services = ();' >>"$folder/none.conf"
+"$billiard" run -c "$folder/none.conf" --bus "memq://cli-$$" 2>"$folder/first" &
+first=$!
+for _ in $(seq 100); do
+	grep -q 'Ctrl-C stops them' "$folder/first" && break
+	sleep 0.1
+done
+call run -c "$folder/none.conf" --bus "memq://cli-$$"
+[ "$status" = 1 ] && grep -q "memq://cli-$$: another billiard run is on this bus" "$folder/err"
+result $? "a second run on the same bus is refused"
+kill "$first"
+wait "$first"
 
 # ---- simulate
 works 'ball_pocket *RED1 .*TOP-RIGHT' simulate "$folder/pot.txt"
@@ -71,7 +105,7 @@ works '"event":"ball_pocket","balls":\["RED1"\],"pocket":"TOP-RIGHT","state":\[{
 works '"event":"ball_ball","balls":\["WHITE0","RED1"\]' simulate --json --speed 1000 --angle 0 "$folder/two.txt"
 works 'ball_ball' simulate -c config/snooker-12ft.conf --speed 1000 --angle 0 --side 0.2 --follow -0.3 --elevation 5 "$folder/two.txt"
 # one list of models: the help's, the documentation's and the configurations'
-models=$("$billiard" simulate --help | sed -n 's/^  --model NAME  *//p')
+models=$("$billiard" help --complete simulate --model | paste -sd, | sed 's/,/, /g')
 [ -n "$models" ] && "$billiard" plan --help | grep -qF -- "$models" && grep -qF "$models" docs/configuration.md &&
 	grep -qF "$models" config/thesis-table.conf && grep -qF "$models" config/snooker-12ft.conf
 result $? "one list of models: $models"

@@ -67,33 +67,6 @@ START_TEST(numbers)
 }
 END_TEST
 
-struct whole {
-	const char *text;
-	int value;
-};
-
-static int take_whole(void *context)
-{
-	struct whole *whole = context;
-	return cmd_whole("--depth", whole->text, 1, 4, &whole->value);
-}
-
-START_TEST(whole_numbers)
-{
-	struct whole good = {"4", 0};
-	ck_assert_int_eq(heard(take_whole, &good), CMD_OK);
-	ck_assert_int_eq(good.value, 4);
-	const char *const bad[] = {"",	  "0", "5", "1.0", "1e0", "two", "4294967297", "99999999999999999999",
-				   "0x1", "3 "};
-	for (size_t i = 0; i < sizeof bad / sizeof *bad; i++) {
-		struct whole whole = {bad[i], 77};
-		ck_assert_msg(heard(take_whole, &whole) == CMD_BAD_INPUT, "\"%s\" was taken", bad[i]);
-		ck_assert_int_eq(whole.value, 77);
-		ck_assert_msg(strncmp(said, "--depth: found ", 15) == 0, "%s", said);
-	}
-}
-END_TEST
-
 /* ---- JSON and configuration -------------------------------------------------------------------------------------- */
 
 static int print(void *context)
@@ -129,7 +102,6 @@ Suite *test_suite(void)
 	Suite *suite = suite_create("cmd");
 	TCase *tcase = tcase_create("shared");
 	tcase_add_test(tcase, numbers);
-	tcase_add_test(tcase, whole_numbers);
 	tcase_add_test(tcase, json_lines);
 	tcase_add_test(tcase, configurations);
 	suite_add_tcase(suite, tcase);

@@ -1,11 +1,13 @@
 #include "app/commands/cmd.h"
 
 #include <errno.h>
-#include <math.h>
 #include <stdarg.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
+
+#include "app/process/bus.h"
+#include "app/process/text.h"
 
 int cmd_bad_input(const char *format, ...)
 {
@@ -20,6 +22,12 @@ int cmd_bad_input(const char *format, ...)
 int cmd_usage(const char *name, const char *reason)
 {
 	return cmd_bad_input("%s: %s (see %s --help)", name, reason, name);
+}
+
+int cmd_options(const struct options *options, int argc, char **argv, void *out, int *first)
+{
+	enum options_outcome outcome = options_read(options, argc, argv, out, first);
+	return outcome == OPTIONS_READ ? CMD_OK : outcome == OPTIONS_ANSWERED ? -1 : CMD_BAD_INPUT;
 }
 
 int cmd_not_written(int code, const char *reason)
@@ -38,26 +46,29 @@ int cmd_config(struct config *config, const char *path)
 	return CMD_OK;
 }
 
-int cmd_number(const char *option, const char *text, double low, double high, double *out)
+int cmd_bus(struct bus **out, const char *url, const struct config *config)
 {
-	char *end;
-	double value = strtod(text, &end);
-	bool decimal = text[0] && text[strspn(text, "+-.0123456789eE")] == 0 && *end == 0;
-	if (!decimal || !(value >= low && value <= high))
-		return cmd_bad_input("%s: found \"%s\", allowed a number %g to %g", option, text, low, high);
-	*out = value;
+	char err[CMD_ERROR_SIZE];
+	if (bus_open(out, url ? url : bus_url(config->bus), err, sizeof err) < 0)
+		return cmd_bad_input("%s", err);
 	return CMD_OK;
 }
 
-int cmd_whole(const char *option, const char *text, int low, int high, int *out)
+int cmd_number(const char *option, const char *text, double low, double high, double *out)
 {
-	char *end;
-	errno = 0;
-	long value = strtol(text, &end, 10);
-	if (end == text || *end || errno || value < low || value > high)
-		return cmd_bad_input("%s: found \"%s\", allowed a whole number %d to %d", option, text, low, high);
-	*out = (int)value;
+	if (!option_number(text, low, high, out))
+		return cmd_bad_input("%s: found \"%s\", allowed a number %g to %g", option, text, low, high);
 	return CMD_OK;
+}
+
+json_t *cmd_json_text(const char *text)
+{
+	char clean[CMD_ERROR_SIZE];
+	json_t *string = json_string(text);
+	if (string)
+		return string;
+	text_get(clean, sizeof clean, (const uint8_t *)text, strlen(text));
+	return json_string(clean);
 }
 
 int cmd_json_line(json_t *object)

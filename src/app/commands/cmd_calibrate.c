@@ -1,6 +1,6 @@
 /* billiard calibrate colours: learns the colour parameters from photographs. */
 #include <errno.h>
-#include <getopt.h>
+#include <limits.h>
 #include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
@@ -15,7 +15,7 @@ enum { RACK_REDS = 15, OPENING_BALLS = 22 };
 static const double SPOT_REACH = 0.035; /* m from its spot that a colour may lie in the opening position */
 static const double LABEL_REACH = 8;	/* px at 1280 from its label that a ball may be found */
 
-struct options {
+struct calibrate_line {
 	const char *config, *labels, *out, *without;
 };
 
@@ -34,55 +34,51 @@ struct learner {
 	json_t *labels;
 };
 
-static void help(void)
+static const char *operand_names(void)
 {
-	puts("usage: billiard calibrate colours [-c CONF] [--labels LABELS.json] [-o OUT.json] IMAGE...\n\n"
-	     "  -c, --config CONF       table, default $BILLIARD_CONF or the installed one\n"
-	     "  --labels LABELS.json    a list of {\"image\": \"a.png\", \"classes\": [{\"type\": \"RED\", \"px\": 1, "
-	     "\"py\": 2}, ...]};\n"
-	     "                          an image is found by the end of its path. Without it every photograph must "
-	     "show the\n"
-	     "                          opening position: colours on their spots, fifteen reds, the white ball "
-	     "anywhere\n"
-	     "  --without NAME          leaves out images whose path contains NAME (to judge what was learned)\n"
-	     "  -o, --output OUT.json   default: the colour file of the configuration");
+	return "colours";
 }
 
-/* CMD_OK; CMD_BAD_INPUT; -1 when --help has answered. */
-static int parse(struct options *options, int argc, char **argv)
-{
-	enum { OPT_LABELS = 256, OPT_WITHOUT };
-	static const struct option table[] = {
-		{"config", required_argument, NULL, 'c'},
-		{"labels", required_argument, NULL, OPT_LABELS},
-		{"without", required_argument, NULL, OPT_WITHOUT},
-		{"output", required_argument, NULL, 'o'},
-		{"help", no_argument, NULL, 'h'},
-		{NULL, 0, NULL, 0},
-	};
-	int c;
-	while ((c = getopt_long(argc, argv, "c:o:h", table, NULL)) != -1) {
-		if (c == 'c')
-			options->config = optarg;
-		else if (c == 'o')
-			options->out = optarg;
-		else if (c == OPT_LABELS)
-			options->labels = optarg;
-		else if (c == OPT_WITHOUT)
-			options->without = optarg;
-		else if (c != 'h')
-			return CMD_BAD_INPUT;
-		else {
-			help();
-			return -1;
-		}
-	}
-	if (optind == argc || strcmp(argv[optind], "colours") != 0)
-		return cmd_usage(argv[0], "wants \"colours\"");
-	if (++optind == argc)
-		return cmd_usage(argv[0], "wants images");
-	return CMD_OK;
-}
+/* clang-format off: a table is read by its columns. */
+#define AT(member) offsetof(struct calibrate_line, member)
+static const struct option_row rows[] = {
+	CMD_CONFIG_ROW(struct calibrate_line),
+	{.name = "labels",
+	 .type = OPTION_FILE,
+	 .offset = AT(labels),
+	 .value = "LABELS.json",
+	 .help = "what is in each image, see below"},
+	{.name = "without",
+	 .type = OPTION_TEXT,
+	 .offset = AT(without),
+	 .value = "NAME",
+	 .help = "leaves out images whose path contains NAME (to judge what was learned)"},
+	{.name = "output",
+	 .letter = 'o',
+	 .type = OPTION_FILE,
+	 .offset = AT(out),
+	 .value = "OUT.json",
+	 .help = "default: the colour file of the configuration"},
+	{.name = NULL},
+};
+/* clang-format on */
+
+const struct options calibrate_options = {
+	.name = "calibrate",
+	.summary = "colour parameters from photographs",
+	.operands = "colours IMAGE...",
+	.operand_min = 2,
+	.operand_max = INT_MAX,
+	.wants = "wants \"colours\" and images",
+	.operand_names = operand_names,
+	.row = rows,
+	.notes = "LABELS.json is a list of {\"image\": \"a.png\", \"classes\": [{\"type\": \"RED\", \"px\": 1, \"py\": "
+		 "2}, ...]};\n"
+		 "an image is found by the end of its path. Without it every photograph must show the opening "
+		 "position:\n"
+		 "colours on their spots, fifteen reds, the white ball anywhere. A file that is replaced stays as "
+		 "OUT.json~.",
+};
 
 static int remember(struct samples *s, const struct colour_sample *sample)
 {
@@ -214,7 +210,7 @@ static int learn_image(struct learner *l, const char *path)
 	return CMD_OK;
 }
 
-static int prepare(struct learner *l, const struct options *options)
+static int prepare(struct learner *l, const struct calibrate_line *options)
 {
 	char err[CMD_ERROR_SIZE] = "";
 	json_error_t error;
@@ -256,15 +252,17 @@ static int finish(const struct learner *l, const char *path)
 
 int cmd_calibrate(int argc, char **argv)
 {
-	struct options options = {0};
-	int status = parse(&options, argc, argv);
+	struct calibrate_line options = {0};
+	int first, status = cmd_options(&calibrate_options, argc, argv, &options, &first);
 	if (status != CMD_OK)
 		return status < 0 ? CMD_OK : status;
+	if (!option_is_name(operand_names(), argv[first]))
+		return cmd_usage(argv[0], calibrate_options.wants);
 	struct learner *l = calloc(1, sizeof *l);
 	if (!l)
 		return cmd_bad_input("out of memory");
 	status = prepare(l, &options);
-	for (int i = optind; i < argc && status == CMD_OK; i++)
+	for (int i = first + 1; i < argc && status == CMD_OK; i++)
 		if (!options.without || !strstr(argv[i], options.without))
 			status = learn_image(l, argv[i]);
 	if (status == CMD_OK)

@@ -2,7 +2,6 @@
  * steered from here but the pictures: proposals come from the services, shots from the virtual table. */
 #include <errno.h>
 #include <fcntl.h>
-#include <getopt.h>
 #include <glib.h>
 #include <math.h>
 #include <stdio.h>
@@ -417,43 +416,46 @@ static int run(struct demo *d)
 	return status ? status : got < wanted || d->failed;
 }
 
-static int parse(struct demo_options *o, int argc, char **argv)
+/* clang-format off: a table is read by its columns. */
+#define AT(member) offsetof(struct demo_options, member)
+static const struct option_row rows[] = {
+	CMD_CONFIG_ROW(struct demo_options),
+	{.name = "out",
+	 .type = OPTION_FILE,
+	 .offset = AT(out),
+	 .value = "DIR",
+	 .help = "where the pictures go, default build/demo"},
+	{.name = "shots",
+	 .type = OPTION_WHOLE,
+	 .offset = AT(shots),
+	 .value = "N",
+	 .help = "that are played, default 5",
+	 .low = 1,
+	 .high = 1000},
+	{.name = "position", .type = OPTION_FILE, .offset = AT(position), .value = "FILE", .help = "to begin with"},
+	{.name = "input",
+	 .type = OPTION_FILE,
+	 .offset = AT(input),
+	 .value = "FOLDER",
+	 .help = "shows photographs instead of the virtual table"},
+	{.name = NULL},
+};
+/* clang-format on */
+
+const struct options demo_options = {
+	.name = "demo",
+	.summary = "the whole loop on the virtual table or on photographs",
+	.operands = "",
+	.row = rows,
+	.notes = "Leaves two pictures per proposal in DIR.",
+};
+
+/* The folder of the pictures. CMD_OK or CMD_BAD_INPUT. */
+static int make_folder(const char *path)
 {
-	static const struct option table[] = {{"config", required_argument, NULL, 'c'},
-					      {"out", required_argument, NULL, 'o'},
-					      {"input", required_argument, NULL, 'i'},
-					      {"shots", required_argument, NULL, 'n'},
-					      {"position", required_argument, NULL, 'p'},
-					      {"help", no_argument, NULL, 'h'},
-					      {NULL, 0, NULL, 0}};
-	*o = (struct demo_options){config_default_path(), "build/demo", NULL, NULL, 5};
-	int c;
-	while ((c = getopt_long(argc, argv, "c:h", table, NULL)) != -1) {
-		if (c == 'c')
-			o->config = optarg;
-		else if (c == 'o')
-			o->out = optarg;
-		else if (c == 'i')
-			o->input = optarg;
-		else if (c == 'p')
-			o->position = optarg;
-		else if (c == 'n' && ((o->shots = atoi(optarg)) < 1 || o->shots > 1000)) {
-			fprintf(stderr, "billiard demo: --shots: found \"%s\", allowed 1..1000\n", optarg);
-			return 2;
-		} else if (c == 'h') {
-			puts("usage: billiard demo [-c CONF] [--out DIR] [--shots N] [--position FILE] | --input "
-			     "FOLDER\n"
-			     "The whole loop on the virtual table (or on photographs), with two pictures per proposal "
-			     "in DIR.");
-			return 1;
-		} else if (c == '?')
-			return 2;
-	}
-	if (mkdir(o->out, 0777) < 0 && errno != EEXIST) {
-		fprintf(stderr, "billiard demo: %s: %s\n", o->out, strerror(errno));
-		return 2;
-	}
-	return 0;
+	if (mkdir(path, 0777) < 0 && errno != EEXIST)
+		return cmd_bad_input("billiard demo: %s: %s", path, strerror(errno));
+	return CMD_OK;
 }
 
 /* An input without photographs is said at once, not by a service that does not start. */
@@ -486,10 +488,12 @@ static int check_position(const struct demo_options *options)
 
 int cmd_demo(int argc, char **argv)
 {
-	struct demo_options options;
-	int r = parse(&options, argc, argv);
-	if (r)
-		return r == 1 ? 0 : 2;
+	struct demo_options options = {config_default_path(), "build/demo", NULL, NULL, 5};
+	int first, r = cmd_options(&demo_options, argc, argv, &options, &first);
+	if (r != CMD_OK)
+		return r < 0 ? CMD_OK : r;
+	if (make_folder(options.out) != CMD_OK)
+		return CMD_BAD_INPUT;
 	if ((options.input && check_input(options.input) < 0) || (options.position && check_position(&options) < 0))
 		return 2;
 	struct demo *d = calloc(1, sizeof *d);

@@ -1,6 +1,6 @@
 /* billiard detect: balls in photographs. */
 #include <errno.h>
-#include <getopt.h>
+#include <limits.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
@@ -15,7 +15,7 @@
 
 static const double mm = 1000; /* in a metre */
 
-struct options {
+struct detect_line {
 	const char *config, *overlay, *dump;
 	bool json;
 };
@@ -28,15 +28,35 @@ struct detector {
 	struct vision_result result;
 };
 
-static void help(void)
-{
-	puts("usage: billiard detect [-c CONF] [--json] [--overlay OUT.png] [--dump DIR] IMAGE...\n\n"
-	     "  -c, --config CONF  table, default $BILLIARD_CONF or the installed one\n"
-	     "  --json             one JSON object per image\n"
-	     "  --overlay OUT.png  the photograph with what was found in it (one image only)\n"
-	     "  --dump DIR         one picture per stage, DIR/01-markers.png and on (one image only)\n"
-	     "Images that cannot be read are named on stderr and give status 2; the others are done all the same.");
-}
+/* clang-format off: a table is read by its columns. */
+#define AT(member) offsetof(struct detect_line, member)
+static const struct option_row rows[] = {
+	CMD_CONFIG_ROW(struct detect_line),
+	{.name = "json", .type = OPTION_FLAG, .offset = AT(json), .help = "one JSON object per image"},
+	{.name = "overlay",
+	 .type = OPTION_FILE,
+	 .offset = AT(overlay),
+	 .value = "OUT.png",
+	 .help = "the photograph with what was found in it (one image only)"},
+	{.name = "dump",
+	 .type = OPTION_FILE,
+	 .offset = AT(dump),
+	 .value = "DIR",
+	 .help = "one picture per stage, DIR/01-markers.png and on (one image only)"},
+	{.name = NULL},
+};
+/* clang-format on */
+
+const struct options detect_options = {
+	.name = "detect",
+	.summary = "balls in photographs",
+	.operands = "IMAGE...",
+	.operand_min = 1,
+	.operand_max = INT_MAX,
+	.wants = "wants images",
+	.row = rows,
+	.notes = "Images that cannot be read are named on stderr and give status 2; the others are done all the same.",
+};
 
 static bool same_file(const char *a, const char *b)
 {
@@ -55,45 +75,18 @@ static int check_overlay(const char *overlay, const char *image)
 	return CMD_OK;
 }
 
-/* CMD_OK; CMD_BAD_INPUT; -1 when --help has answered. */
-static int parse(struct options *options, int argc, char **argv)
+/* What the table cannot say: pictures are of one image. */
+static int check(const struct detect_line *options, int argc, char **argv, int first)
 {
-	enum { OPT_JSON = 256, OPT_OVERLAY, OPT_DUMP };
-	static const struct option table[] = {
-		{"config", required_argument, NULL, 'c'},
-		{"json", no_argument, NULL, OPT_JSON},
-		{"overlay", required_argument, NULL, OPT_OVERLAY},
-		{"dump", required_argument, NULL, OPT_DUMP},
-		{"help", no_argument, NULL, 'h'},
-		{NULL, 0, NULL, 0},
-	};
-	int c;
-	while ((c = getopt_long(argc, argv, "c:h", table, NULL)) != -1) {
-		if (c == 'c')
-			options->config = optarg;
-		else if (c == OPT_JSON)
-			options->json = true;
-		else if (c == OPT_OVERLAY)
-			options->overlay = optarg;
-		else if (c == OPT_DUMP)
-			options->dump = optarg;
-		else if (c != 'h')
-			return CMD_BAD_INPUT;
-		else {
-			help();
-			return -1;
-		}
-	}
-	if (optind == argc)
-		return cmd_usage(argv[0], "wants images");
-	if (options->overlay && optind != argc - 1)
+	bool one = first == argc - 1;
+	if (options->overlay && !one)
 		return cmd_usage(argv[0], "--overlay takes one image");
-	if (options->dump && optind != argc - 1)
+	if (options->dump && !one)
 		return cmd_usage(argv[0], "--dump takes one image");
-	return options->overlay ? check_overlay(options->overlay, argv[optind]) : CMD_OK;
+	return options->overlay ? check_overlay(options->overlay, argv[first]) : CMD_OK;
 }
 
-static int prepare(struct detector *detector, const struct options *options)
+static int prepare(struct detector *detector, const struct detect_line *options)
 {
 	char err[CMD_ERROR_SIZE] = "";
 	int status = cmd_config(&detector->config, options->config);
@@ -121,8 +114,7 @@ static int print_json(const char *image, const struct vision_result *result, dou
 	}
 	bool calibrated = result->calibration != CALIBRATION_NONE;
 	json_t *line = json_object();
-	json_t *name = json_string(image);
-	json_object_set_new(line, "image", name ? name : json_string("(a name that is not UTF-8)"));
+	json_object_set_new(line, "image", cmd_json_text(image));
 	json_object_set_new(line, "calibrated", json_boolean(calibrated));
 	if (calibrated)
 		json_object_set_new(line, "residual_px", json_real(result->residual_px));
@@ -212,7 +204,7 @@ static int write_overlay(const struct detector *detector, const char *path)
 	return code < 0 ? cmd_not_written(code, err) : CMD_OK;
 }
 
-static int detect(struct detector *detector, const struct options *options, const char *path)
+static int detect(struct detector *detector, const struct detect_line *options, const char *path)
 {
 	char err[CMD_ERROR_SIZE] = "";
 	if (image_read(path, &detector->buffer, err, sizeof err) < 0)
@@ -232,16 +224,19 @@ static int detect(struct detector *detector, const struct options *options, cons
 
 int cmd_detect(int argc, char **argv)
 {
-	struct options options = {0};
-	int status = parse(&options, argc, argv);
+	struct detect_line options = {0};
+	int first, status = cmd_options(&detect_options, argc, argv, &options, &first);
 	if (status != CMD_OK)
 		return status < 0 ? CMD_OK : status;
+	status = check(&options, argc, argv, first);
+	if (status != CMD_OK)
+		return status;
 	struct detector *detector = calloc(1, sizeof *detector);
 	if (!detector)
 		return cmd_bad_input("%s: out of memory", argv[0]);
 	status = prepare(detector, &options);
 	if (status == CMD_OK) {
-		for (int i = optind; i < argc; i++) {
+		for (int i = first; i < argc; i++) {
 			int one = detect(detector, &options, argv[i]);
 			status = one > status ? one : status;
 		}

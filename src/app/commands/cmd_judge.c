@@ -1,101 +1,79 @@
 /* billiard judge: what was believed, asked for and drawn, against what was there. */
-#include <getopt.h>
-#include <stdio.h>
+#include <limits.h>
 
 #include "app/commands/cmd.h"
 #include "app/commands/cmd_judge.h"
 
-static const double KEEP = 5, KEEP_MAX = 60;	 /* s */
-static const double SECONDS_MAX = 7 * 24 * 3600; /* s */
+enum { KEEP = 5, KEEP_MAX = 60, SECONDS_MAX = 7 * 24 * 3600 }; /* s */
 
-static void help(void)
+/* clang-format off: a table is read by its columns. */
+#define AT(member) offsetof(struct judge_options, member)
+static const struct option_row rows[] = {
+	CMD_CONFIG_ROW(struct judge_options),
+	CMD_BUS_ROW(struct judge_options),
+	{.name = "live", .type = OPTION_FLAG, .offset = AT(live), .help = "the bus until Ctrl-C instead of logs"},
+	{.name = "seconds",
+	 .type = OPTION_NUMBER,
+	 .offset = AT(seconds),
+	 .value = "S",
+	 .help = "ends --live after so long",
+	 .low = 0.1,
+	 .high = SECONDS_MAX},
+	{.name = "replay",
+	 .type = OPTION_FLAG,
+	 .offset = AT(replay),
+	 .help = "plays the CAMERA messages of each log to a fresh billiard-vision and judges what it sees at the end"},
+	{.name = "out",
+	 .type = OPTION_FILE,
+	 .offset = AT(out),
+	 .value = "DIR",
+	 .help = "where wrong rests leave replays"},
+	{.name = "keep",
+	 .type = OPTION_NUMBER,
+	 .offset = AT(keep),
+	 .value = "S",
+	 .help = "how long those are, default 5",
+	 .low = 0.1,
+	 .high = KEEP_MAX},
+	{.name = "json", .type = OPTION_FLAG, .offset = AT(json), .help = "one JSON object per log"},
+	{.name = NULL},
+};
+/* clang-format on */
+
+const struct options judge_options = {
+	.name = "judge",
+	.summary = "what was believed, asked for and drawn, against the truth",
+	.operands = "LOG... | --live",
+	.operand_max = INT_MAX,
+	.wants = "no log",
+	.row = rows,
+	.notes = "Compares TABLE_STATE, PLAN_REQUEST, PLAN and DRAW with TRUTH over whole runs.",
+};
+
+/* What the table cannot say: which options go together. */
+static int check(const struct judge_options *o, const char *name, int logs)
 {
-	puts("usage: billiard judge [-c CONF] [--json] [--out DIR] [--keep S] (LOG... | --live [--bus URL] [--seconds "
-	     "S])\n"
-	     "       billiard judge [-c CONF] [--json] --replay LOG...\n"
-	     "Compares TABLE_STATE, PLAN_REQUEST, PLAN and DRAW with TRUTH over whole runs, from LCM logs or from the\n"
-	     "bus until Ctrl-C; wrong rests leave replays of S seconds (5) in DIR. --replay plays the CAMERA messages "
-	     "of\n"
-	     "each log to a fresh billiard-vision and compares what it sees at the end with the last TRUTH.");
-}
-
-enum { OPTION_LIVE = 256, OPTION_REPLAY, OPTION_JSON, OPTION_OUT, OPTION_KEEP, OPTION_SECONDS, OPTION_BUS };
-
-static int take(struct judge_options *o, int c)
-{
-	switch (c) {
-	case 'c':
-		o->config = optarg;
-		return CMD_OK;
-	case OPTION_LIVE:
-		o->live = true;
-		return CMD_OK;
-	case OPTION_REPLAY:
-		o->replay = true;
-		return CMD_OK;
-	case OPTION_JSON:
-		o->json = true;
-		return CMD_OK;
-	case OPTION_OUT:
-		o->out = optarg;
-		return CMD_OK;
-	case OPTION_BUS:
-		o->bus = optarg;
-		return CMD_OK;
-	case OPTION_KEEP:
-		return cmd_number("billiard judge: --keep", optarg, 0.1, KEEP_MAX, &o->keep);
-	case OPTION_SECONDS:
-		return cmd_number("billiard judge: --seconds", optarg, 0.1, SECONDS_MAX, &o->seconds);
-	default:
-		return CMD_BAD_INPUT;
-	}
-}
-
-/* CMD_OK; CMD_BAD_INPUT after a message; -1 when help was given. */
-static int parse(struct judge_options *o, int argc, char **argv)
-{
-	static const struct option table[] = {{"config", required_argument, NULL, 'c'},
-					      {"live", no_argument, NULL, OPTION_LIVE},
-					      {"replay", no_argument, NULL, OPTION_REPLAY},
-					      {"json", no_argument, NULL, OPTION_JSON},
-					      {"out", required_argument, NULL, OPTION_OUT},
-					      {"keep", required_argument, NULL, OPTION_KEEP},
-					      {"seconds", required_argument, NULL, OPTION_SECONDS},
-					      {"bus", required_argument, NULL, OPTION_BUS},
-					      {"help", no_argument, NULL, 'h'},
-					      {NULL, 0, NULL, 0}};
-	*o = (struct judge_options){.keep = KEEP};
-	int c;
-	while ((c = getopt_long(argc, argv, "c:h", table, NULL)) != -1) {
-		if (c == 'h') {
-			help();
-			return -1;
-		}
-		int status = take(o, c);
-		if (status != CMD_OK)
-			return status;
-	}
-	int logs = argc - optind;
 	if (o->live && (o->replay || logs > 0))
-		return cmd_usage(argv[0], "--live takes no log");
-	if (!o->live && logs == 0)
-		return cmd_usage(argv[0], "no log");
-	return CMD_OK;
+		return cmd_usage(name, "--live takes no log");
+	return o->live || logs > 0 ? CMD_OK : cmd_usage(name, judge_options.wants);
 }
 
 int cmd_judge(int argc, char **argv)
 {
-	struct judge_options options;
+	struct judge_options options = {.keep = KEEP};
 	struct config config;
-	int status = parse(&options, argc, argv);
+	int first, status = cmd_options(&judge_options, argc, argv, &options, &first);
 	if (status != CMD_OK)
 		return status < 0 ? CMD_OK : status;
+	status = check(&options, argv[0], argc - first);
+	if (status != CMD_OK)
+		return status;
 	status = cmd_config(&config, options.config);
 	if (status != CMD_OK)
 		return status;
 	if (options.replay)
-		return cmd_judge_replay(&config, &options, argc - optind, argv + optind);
+		return cmd_judge_replay(&config, &options, argc - first, argv + first);
 	if (options.live)
 		return cmd_judge_live(&config, &options);
-	return cmd_judge_logs(&config, &options, argc - optind, argv + optind);
+	return cmd_judge_logs(&config, &options, argc - first, argv + first);
 }

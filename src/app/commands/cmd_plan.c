@@ -1,5 +1,4 @@
 /* billiard plan: ranked proposals for a position. */
-#include <getopt.h>
 #include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
@@ -14,7 +13,7 @@ enum { TRACE_MAX = 1024, PATH_SIZE = 512 };
 static const double mm = 1000; /* in a metre */
 static const double degree = 180 / M_PI;
 
-struct options {
+struct plan_line {
 	const char *config, *model, *profile, *target, *plot, *position;
 	int depth, rails, balls, speeds, plans, tolerances, workers; /* -1: as configured */
 	double budget_ms;					     /* negative: as configured */
@@ -33,150 +32,80 @@ struct run {
 	struct trace_entry entry[TRACE_MAX];
 };
 
-static void help(void)
+/* ---- command line ------------------------------------------------------------------------------------------------ */
+
+static const char *target_names(void)
 {
-	printf("usage: billiard plan [-c CONF] [--depth N] [--rails N] [--balls N] [--target COLOUR|ID|any|rules] "
-	       "[--speeds N]\n"
-	       "                     [--workers N] [--budget-ms N] [--budget-nodes N] [--plans N] [--tolerances N] "
-	       "[--in-hand]\n"
-	       "                     [--model NAME] [--profile NAME] [--json] [--plot FILE.svg|.png] POSITION.txt\n\n"
-	       "  -c, --config CONF  table, default $BILLIARD_CONF or the installed one\n"
-	       "  --depth N          shots ahead, 1..4\n"
-	       "  --rails N          cushions in one leg at most, 0..3\n"
-	       "  --balls N          object balls in a chain at most, 1..3 (1: direct)\n"
-	       "  --target WHAT      a colour (RED, YELLOW, ...), any, rules, or the ID of one ball; default any\n"
-	       "  --speeds N         start speeds tried\n"
-	       "  --workers N        threads, 1..16\n"
-	       "  --budget-ms N      time for the search (0: none)\n"
-	       "  --budget-nodes N   nodes for the search (0: none); the same result every time\n"
-	       "  --plans N          wanted, 1..1024\n"
-	       "  --tolerances N     of so many plans tolerance and success are found\n"
-	       "  --in-hand          the cue ball may be placed in the D\n"
-	       "  --model NAME       %s\n"
-	       "  --profile NAME     a player of the configuration\n"
-	       "  --json             one JSON object per plan, then one of figures\n"
-	       "  --plot FILE        draws each shot: FILE-RANK-SHOT\n"
-	       "POSITION.txt holds \"ID, TYPE, x, y\" lines in mm (- is standard input).\n",
-	       model_names());
+	return "any, rules, RED, YELLOW, GREEN, BROWN, BLUE, PINK, BLACK";
 }
 
-/* ---- command line ---------------------------------------------------------------------------------------------------
- */
+/* clang-format off: a table is read by its columns. */
+#define AT(member) offsetof(struct plan_line, member)
+#define WHOLE(key, min, max, member, text)                                                                             \
+	{                                                                                                              \
+		.name = key, .type = OPTION_WHOLE, .offset = AT(member), .value = "N", .help = text, .low = min,       \
+		.high = max                                                                                            \
+	}
+#define NUMBER(key, min, max, member, text)                                                                            \
+	{                                                                                                              \
+		.name = key, .type = OPTION_NUMBER, .offset = AT(member), .value = "N", .help = text, .low = min,      \
+		.high = max                                                                                            \
+	}
+#define FLAG(key, member, text)                                                                                        \
+	{                                                                                                              \
+		.name = key, .type = OPTION_FLAG, .offset = AT(member), .help = text                                   \
+	}
 
-enum {
-	OPT_DEPTH = 256,
-	OPT_RAILS,
-	OPT_BALLS,
-	OPT_TARGET,
-	OPT_SPEEDS,
-	OPT_WORKERS,
-	OPT_BUDGET_MS,
-	OPT_BUDGET_NODES,
-	OPT_PLANS,
-	OPT_TOLERANCES,
-	OPT_IN_HAND,
-	OPT_MODEL,
-	OPT_PROFILE,
-	OPT_JSON,
-	OPT_PLOT
+static const struct option_row rows[] = {
+	CMD_CONFIG_ROW(struct plan_line),
+	WHOLE("depth", 1, PLAN_SHOTS_MAX, depth, "shots ahead"),
+	WHOLE("rails", 0, PLAN_RAILS_MAX, rails, "cushions in one leg at most"),
+	WHOLE("balls", 1, PLAN_CHAIN_MAX - 1, balls, "object balls in a chain at most (1: direct)"),
+	{.name = "target",
+	 .type = OPTION_TEXT,
+	 .offset = AT(target),
+	 .value = "WHAT",
+	 .names = target_names,
+	 .help = "a colour (RED, YELLOW, ...), any, rules, or the ID of one ball; default any"},
+	WHOLE("speeds", 1, 32, speeds, "start speeds tried"),
+	WHOLE("workers", 1, PLAN_WORKERS_MAX, workers, "threads"),
+	NUMBER("budget-ms", 0, 600000, budget_ms, "time for the search (0: none)"),
+	NUMBER("budget-nodes", 0, 1e12, budget_nodes, "nodes for the search (0: none), the same result every time"),
+	WHOLE("plans", 1, PLAN_MAX, plans, "how many are wanted"),
+	WHOLE("tolerances", 0, PLAN_MAX, tolerances, "of so many plans tolerance and success are found"),
+	FLAG("in-hand", in_hand, "the cue ball may be placed in the D"),
+	{.name = "model",
+	 .type = OPTION_CHOICE,
+	 .offset = AT(model),
+	 .value = "NAME",
+	 .names = model_names,
+	 .help = "physics instead of the configuration's"},
+	{.name = "profile",
+	 .type = OPTION_TEXT,
+	 .offset = AT(profile),
+	 .value = "NAME",
+	 .help = "a player of the configuration"},
+	FLAG("json", json, "one JSON object per plan, then one of figures"),
+	{.name = "plot",
+	 .type = OPTION_FILE,
+	 .offset = AT(plot),
+	 .value = "FILE",
+	 .help = "draws each shot as .svg or .png: FILE-RANK-SHOT"},
+	{.name = NULL},
 };
+/* clang-format on */
 
-static const struct option option_table[] = {
-	{"config", required_argument, NULL, 'c'},
-	{"depth", required_argument, NULL, OPT_DEPTH},
-	{"rails", required_argument, NULL, OPT_RAILS},
-	{"balls", required_argument, NULL, OPT_BALLS},
-	{"target", required_argument, NULL, OPT_TARGET},
-	{"speeds", required_argument, NULL, OPT_SPEEDS},
-	{"workers", required_argument, NULL, OPT_WORKERS},
-	{"budget-ms", required_argument, NULL, OPT_BUDGET_MS},
-	{"budget-nodes", required_argument, NULL, OPT_BUDGET_NODES},
-	{"plans", required_argument, NULL, OPT_PLANS},
-	{"tolerances", required_argument, NULL, OPT_TOLERANCES},
-	{"in-hand", no_argument, NULL, OPT_IN_HAND},
-	{"model", required_argument, NULL, OPT_MODEL},
-	{"profile", required_argument, NULL, OPT_PROFILE},
-	{"json", no_argument, NULL, OPT_JSON},
-	{"plot", required_argument, NULL, OPT_PLOT},
-	{"help", no_argument, NULL, 'h'},
-	{NULL, 0, NULL, 0},
+const struct options plan_options = {
+	.name = "plan",
+	.summary = "the best shots from a position",
+	.operands = "POSITION.txt",
+	.operand_min = 1,
+	.operand_max = 1,
+	.wants = "wants one position",
+	.row = rows,
+	.notes = "POSITION.txt holds \"ID, TYPE, x, y\" lines in mm, or what detect --json prints (- is standard "
+		 "input).",
 };
-
-static int take_number(struct options *options, int c)
-{
-	switch (c) {
-	case OPT_DEPTH:
-		return cmd_whole("--depth", optarg, 1, PLAN_SHOTS_MAX, &options->depth);
-	case OPT_RAILS:
-		return cmd_whole("--rails", optarg, 0, PLAN_RAILS_MAX, &options->rails);
-	case OPT_BALLS:
-		return cmd_whole("--balls", optarg, 1, PLAN_CHAIN_MAX - 1, &options->balls);
-	case OPT_SPEEDS:
-		return cmd_whole("--speeds", optarg, 1, 32, &options->speeds);
-	case OPT_WORKERS:
-		return cmd_whole("--workers", optarg, 1, PLAN_WORKERS_MAX, &options->workers);
-	case OPT_PLANS:
-		return cmd_whole("--plans", optarg, 1, PLAN_MAX, &options->plans);
-	case OPT_TOLERANCES:
-		return cmd_whole("--tolerances", optarg, 0, PLAN_MAX, &options->tolerances);
-	case OPT_BUDGET_MS:
-		return cmd_number("--budget-ms", optarg, 0, 600000, &options->budget_ms);
-	case OPT_BUDGET_NODES:
-		return cmd_number("--budget-nodes", optarg, 0, 1e12, &options->budget_nodes);
-	default:
-		return CMD_BAD_INPUT;
-	}
-}
-
-static int take_option(struct options *options, int c)
-{
-	switch (c) {
-	case 'c':
-		options->config = optarg;
-		return CMD_OK;
-	case OPT_TARGET:
-		options->target = optarg;
-		return CMD_OK;
-	case OPT_MODEL:
-		options->model = optarg;
-		return CMD_OK;
-	case OPT_PROFILE:
-		options->profile = optarg;
-		return CMD_OK;
-	case OPT_IN_HAND:
-		options->in_hand = true;
-		return CMD_OK;
-	case OPT_JSON:
-		options->json = true;
-		return CMD_OK;
-	case OPT_PLOT:
-		options->plot = optarg;
-		return plot_format_known(optarg)
-			       ? CMD_OK
-			       : cmd_bad_input("--plot: \"%s\" ends neither in .svg nor in .png", optarg);
-	default:
-		return take_number(options, c);
-	}
-}
-
-/* CMD_OK; CMD_BAD_INPUT; -1 when --help has answered. */
-static int parse(struct options *options, int argc, char **argv)
-{
-	int c;
-	while ((c = getopt_long(argc, argv, "c:h", option_table, NULL)) != -1) {
-		if (c == 'h') {
-			help();
-			return -1;
-		}
-		int status = take_option(options, c);
-		if (status != CMD_OK)
-			return status;
-	}
-	if (optind != argc - 1)
-		return cmd_usage(argv[0], "wants one position");
-	options->position = argv[optind];
-	return CMD_OK;
-}
 
 /* ---- from options to a request --------------------------------------------------------------------------------------
  */
@@ -226,7 +155,7 @@ static void add_white_in_hand(struct position *position)
 		snprintf(position->name[i], BALL_NAME_SIZE, "WHITE%d", n);
 }
 
-static int set_request(struct run *run, const struct options *options)
+static int set_request(struct run *run, const struct plan_line *options)
 {
 	char err[CMD_ERROR_SIZE];
 	const struct config_planner *planner = &run->config.planner;
@@ -254,7 +183,17 @@ static int set_request(struct run *run, const struct options *options)
 	return status;
 }
 
-static int set_def(struct run *run, const struct options *options)
+static int bad_profile(const struct config *config, const char *found)
+{
+	char names[CONFIG_PROFILE_MAX * 18] = "";
+	for (int i = 0; i < config->profile_count; i++) {
+		strcat(names, i ? ", " : "");
+		strcat(names, config->profiles[i].name);
+	}
+	return cmd_bad_input("--profile: found \"%s\", allowed %s", found, names);
+}
+
+static int set_def(struct run *run, const struct plan_line *options)
 {
 	struct planner_def *def = &run->def;
 	*def = planner_def_default();
@@ -264,18 +203,18 @@ static int set_def(struct run *run, const struct options *options)
 	def->workers = or_configured(options->workers, 1);
 	def->memory = run->config.planner.memory;
 	def->now = monotonic;
-	if (options->model && !model_from_name(options->model, &def->model))
-		return cmd_bad_input("--model: found \"%s\", allowed %s", options->model, model_names());
+	if (options->model)
+		model_from_name(options->model, &def->model); /* the table of options knows the names */
 	if (options->profile) {
 		const struct cost_profile *profile = config_profile(&run->config, options->profile);
 		if (!profile)
-			return cmd_bad_input("--profile: found \"%s\", allowed a name from profiles", options->profile);
+			return bad_profile(&run->config, options->profile);
 		def->profile = *profile;
 	}
 	return CMD_OK;
 }
 
-static int prepare(struct run *run, const struct options *options)
+static int prepare(struct run *run, const struct plan_line *options)
 {
 	char err[CMD_ERROR_SIZE];
 	int status = cmd_config(&run->config, options->config);
@@ -412,7 +351,7 @@ static int plot_plans(struct run *run, const char *file)
 	return CMD_OK;
 }
 
-static int search(struct run *run, const struct options *options)
+static int search(struct run *run, const struct plan_line *options)
 {
 	char err[CMD_ERROR_SIZE];
 	double begin = monotonic(NULL);
@@ -428,17 +367,20 @@ static int search(struct run *run, const struct options *options)
 
 int cmd_plan(int argc, char **argv)
 {
-	struct options options = {.depth = -1,
-				  .rails = -1,
-				  .balls = -1,
-				  .speeds = -1,
-				  .plans = -1,
-				  .tolerances = -1,
-				  .workers = -1,
-				  .budget_ms = -1};
-	int status = parse(&options, argc, argv);
+	struct plan_line options = {.depth = -1,
+				    .rails = -1,
+				    .balls = -1,
+				    .speeds = -1,
+				    .plans = -1,
+				    .tolerances = -1,
+				    .workers = -1,
+				    .budget_ms = -1};
+	int first, status = cmd_options(&plan_options, argc, argv, &options, &first);
 	if (status != CMD_OK)
 		return status < 0 ? CMD_OK : status;
+	options.position = argv[first];
+	if (options.plot && !plot_format_known(options.plot))
+		return cmd_bad_input("--plot: \"%s\" ends neither in .svg nor in .png", options.plot);
 	struct run *run = calloc(1, sizeof *run);
 	if (!run)
 		return cmd_bad_input("%s: out of memory", argv[0]);

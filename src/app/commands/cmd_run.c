@@ -1,10 +1,14 @@
 /* billiard run: all services of a configuration, without systemd. */
-#include <getopt.h>
+#include <errno.h>
 #include <signal.h>
 #include <stdio.h>
+#include <string.h>
+#include <sys/socket.h>
+#include <sys/un.h>
 
 #include "app/commands/cmd.h"
 #include "app/config/config.h"
+#include "app/process/bus.h"
 #include "app/process/supervisor.h"
 
 static int on_signal(sd_event_source *source, const struct signalfd_siginfo *info, void *context)
@@ -21,6 +25,21 @@ static int watch(struct supervisor *s, int number)
 	sigaddset(&set, number);
 	sigprocmask(SIG_BLOCK, &set, NULL);
 	return sd_event_add_signal(s->event, NULL, number, on_signal, s);
+}
+
+/* Two sets of services on one bus would answer each other. The name is gone with the process, and is that of a network
+ * namespace, as the bus is. CMD_OK, or CMD_FAILED after one line on stderr. */
+static int claim_bus(const char *url)
+{
+	struct sockaddr_un name = {.sun_family = AF_UNIX};
+	/* sun_path begins with a zero: a name without a file */
+	snprintf(name.sun_path + 1, sizeof name.sun_path - 1, "billiard-run %s", url);
+	int fd = socket(AF_UNIX, SOCK_DGRAM | SOCK_CLOEXEC, 0);
+	if (fd >= 0 && bind(fd, (struct sockaddr *)&name, sizeof name) == 0)
+		return CMD_OK; /* held until the process ends */
+	fprintf(stderr, "billiard run: %s: %s\n", url,
+		errno == EADDRINUSE ? "another billiard run is on this bus" : strerror(errno));
+	return CMD_FAILED;
 }
 
 static int run(const struct config *config, const char *path, const char *bus)
@@ -51,33 +70,35 @@ static int run(const struct config *config, const char *path, const char *bus)
 	return status;
 }
 
+struct run_line {
+	const char *config, *bus;
+};
+
+/* clang-format off: a table is read by its columns. */
+static const struct option_row rows[] = {
+	CMD_CONFIG_ROW(struct run_line),
+	CMD_BUS_ROW(struct run_line),
+	{.name = NULL},
+};
+/* clang-format on */
+
+const struct options run_options = {
+	.name = "run",
+	.summary = "starts all services of a configuration",
+	.operands = "",
+	.row = rows,
+	.notes = "Ctrl-C stops them.",
+};
+
 int cmd_run(int argc, char **argv)
 {
-	static const struct option table[] = {{"config", required_argument, NULL, 'c'},
-					      {"bus", required_argument, NULL, 'b'},
-					      {"help", no_argument, NULL, 'h'},
-					      {NULL, 0, NULL, 0}};
-	const char *path = config_default_path(), *bus = NULL;
-	int c;
-	while ((c = getopt_long(argc, argv, "c:h", table, NULL)) != -1) {
-		if (c == 'h') {
-			puts("usage: billiard run [-c CONF] [--bus URL]\nStarts the services of the configuration; "
-			     "Ctrl-C stops them.");
-			return 0;
-		}
-		if (c == '?')
-			return 2;
-		*(c == 'c' ? &path : &bus) = optarg;
-	}
-	if (optind < argc) {
-		fprintf(stderr, "billiard run: unexpected argument \"%s\"\n", argv[optind]);
-		return 2;
-	}
-	char err[512];
+	struct run_line options = {.config = config_default_path()};
+	int first, status = cmd_options(&run_options, argc, argv, &options, &first);
+	if (status != CMD_OK)
+		return status < 0 ? CMD_OK : status;
 	struct config config;
-	if (config_load(&config, path, err, sizeof err) < 0) {
-		fprintf(stderr, "billiard run: %s\n", err);
-		return 2;
-	}
-	return run(&config, path, bus);
+	status = cmd_config(&config, options.config);
+	if (status == CMD_OK)
+		status = claim_bus(options.bus ? options.bus : bus_url(config.bus));
+	return status == CMD_OK ? run(&config, options.config, options.bus) : status;
 }

@@ -1,6 +1,5 @@
 /* billiard simulate: the events of one shot, with the state of every ball after each. */
 #include <errno.h>
-#include <getopt.h>
 #include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
@@ -15,10 +14,11 @@
 static const double mm = 1000; /* in a metre */
 enum { EVENT_LIMIT = 10000 };
 
-struct options {
+struct simulate_line {
 	const char *config, *model, *plot, *position, *shot_file;
-	double speed, angle, side, follow, elevation; /* mm/s, degrees, shares, degrees */
-	bool has_speed, has_angle, json;
+	double speed, angle;		/* mm/s, degrees; NaN: not given */
+	double side, follow, elevation; /* shares, degrees */
+	bool json;
 };
 
 struct run {
@@ -30,119 +30,83 @@ struct run {
 	int cue; /* -1: nothing is struck */
 };
 
-static void help(void)
-{
-	printf("usage: billiard simulate [-c CONF] [--model NAME] POSITION.txt [--speed MM_S --angle DEG]\n"
-	       "                         [--side R] [--follow R] [--elevation DEG] [--json] [--plot FILE.svg|.png]\n"
-	       "       billiard simulate --shot SHOT.json\n\n"
-	       "  -c, --config CONF  table, default $BILLIARD_CONF or the installed one\n"
-	       "  --model NAME       %s\n"
-	       "  --speed MM_S       of the cue ball after the strike; default: the V line of the position\n"
-	       "  --angle DEG        counter-clockwise from the way to the black cushion\n"
-	       "  --side R           where the tip meets the ball, share of its radius, + left\n"
-	       "  --follow R         the same, + above the middle\n"
-	       "  --elevation DEG    of the cue\n"
-	       "  --json             one JSON object per event\n"
-	       "  --plot FILE        draws the paths\n"
-	       "  --shot SHOT.json   a shot of another simulator; events are printed as JSON in its frame and SI "
-	       "units\n"
-	       "POSITION.txt holds \"ID, TYPE, x, y\" lines in mm (- is standard input).\n",
-	       model_names());
-}
-
 /* ---- command line ------------------------------------------------------------------------------------------------ */
 
-enum { OPT_MODEL = 256, OPT_SPEED, OPT_ANGLE, OPT_SIDE, OPT_FOLLOW, OPT_ELEVATION, OPT_PLOT, OPT_JSON, OPT_SHOT };
-
-static int take_option(struct options *options, int c)
-{
-	switch (c) {
-	case 'c':
-		options->config = optarg;
-		return CMD_OK;
-	case OPT_MODEL:
-		options->model = optarg;
-		return CMD_OK;
-	case OPT_SPEED:
-		options->has_speed = true;
-		return cmd_number("--speed", optarg, 0.001, 20000, &options->speed);
-	case OPT_ANGLE:
-		options->has_angle = true;
-		return cmd_number("--angle", optarg, -360, 360, &options->angle);
-	case OPT_SIDE:
-		return cmd_number("--side", optarg, -1, 1, &options->side);
-	case OPT_FOLLOW:
-		return cmd_number("--follow", optarg, -1, 1, &options->follow);
-	case OPT_ELEVATION:
-		return cmd_number("--elevation", optarg, 0, 89, &options->elevation);
-	case OPT_PLOT:
-		options->plot = optarg;
-		return plot_format_known(optarg)
-			       ? CMD_OK
-			       : cmd_bad_input("--plot: \"%s\" ends neither in .svg nor in .png", optarg);
-	case OPT_SHOT:
-		options->shot_file = optarg;
-		return CMD_OK;
-	case OPT_JSON:
-		options->json = true;
-		return CMD_OK;
-	default:
-		return CMD_BAD_INPUT;
+/* clang-format off: a table is read by its columns. */
+#define AT(member) offsetof(struct simulate_line, member)
+#define NUMBER(key, unit, min, max, member, text)                                                                      \
+	{                                                                                                              \
+		.name = key, .type = OPTION_NUMBER, .offset = AT(member), .value = unit, .help = text, .low = min,     \
+		.high = max                                                                                            \
 	}
-}
 
-/* CMD_OK; CMD_BAD_INPUT; -1 when --help has answered. */
-static int parse(struct options *options, int argc, char **argv)
+static const struct option_row rows[] = {
+	CMD_CONFIG_ROW(struct simulate_line),
+	{.name = "model",
+	 .type = OPTION_CHOICE,
+	 .offset = AT(model),
+	 .value = "NAME",
+	 .names = model_names,
+	 .help = "physics instead of the configuration's"},
+	NUMBER("speed", "MM_S", 0.001, 20000, speed,
+	       "of the cue ball after the strike; default: the position's V line"),
+	NUMBER("angle", "DEG", -360, 360, angle, "counter-clockwise from the way to the black cushion"),
+	NUMBER("side", "R", -1, 1, side, "where the tip meets the ball, share of its radius, + left"),
+	NUMBER("follow", "R", -1, 1, follow, "the same, + above the middle"),
+	NUMBER("elevation", "DEG", 0, 89, elevation, "of the cue"),
+	{.name = "json", .type = OPTION_FLAG, .offset = AT(json), .help = "one JSON object per event"},
+	{.name = "plot",
+	 .type = OPTION_FILE,
+	 .offset = AT(plot),
+	 .value = "FILE",
+	 .help = "draws the paths as .svg or .png"},
+	{.name = "shot",
+	 .type = OPTION_FILE,
+	 .offset = AT(shot_file),
+	 .value = "SHOT.json",
+	 .help = "a shot of another simulator; its events as JSON in its frame and SI units"},
+	{.name = NULL},
+};
+/* clang-format on */
+
+const struct options simulate_options = {
+	.name = "simulate",
+	.summary = "what a shot does, event by event",
+	.operands = "POSITION.txt | --shot SHOT.json",
+	.operand_max = 1,
+	.wants = "wants one position, or one --shot",
+	.row = rows,
+	.notes = "POSITION.txt holds \"ID, TYPE, x, y\" lines in mm (- is standard input).",
+};
+
+/* What the table cannot say: which options go together. */
+static int check(const struct simulate_line *options, const char *name)
 {
-	static const struct option table[] = {
-		{"config", required_argument, NULL, 'c'},
-		{"model", required_argument, NULL, OPT_MODEL},
-		{"speed", required_argument, NULL, OPT_SPEED},
-		{"angle", required_argument, NULL, OPT_ANGLE},
-		{"side", required_argument, NULL, OPT_SIDE},
-		{"follow", required_argument, NULL, OPT_FOLLOW},
-		{"elevation", required_argument, NULL, OPT_ELEVATION},
-		{"plot", required_argument, NULL, OPT_PLOT},
-		{"json", no_argument, NULL, OPT_JSON},
-		{"shot", required_argument, NULL, OPT_SHOT},
-		{"help", no_argument, NULL, 'h'},
-		{NULL, 0, NULL, 0},
-	};
-	int c;
-	while ((c = getopt_long(argc, argv, "c:h", table, NULL)) != -1) {
-		if (c == 'h') {
-			help();
-			return -1;
-		}
-		int status = take_option(options, c);
-		if (status != CMD_OK)
-			return status;
-	}
-	if (options->shot_file && optind == argc)
-		return CMD_OK;
-	if (options->shot_file || optind != argc - 1)
-		return cmd_usage(argv[0], "wants one position, or one --shot");
-	options->position = argv[optind];
-	if (options->has_speed != options->has_angle)
-		return cmd_usage(argv[0], "--speed and --angle belong together");
-	if (options->side * options->side + options->follow * options->follow >= 1)
-		return cmd_usage(argv[0], "--side and --follow miss the ball");
+	if (!options->shot_file == !options->position)
+		return cmd_usage(name, "wants one position, or one --shot");
+	if (isnan(options->speed) != isnan(options->angle))
+		return cmd_usage(name, "--speed and --angle belong together");
+	if (hypot(options->side, options->follow) >= 1)
+		return cmd_usage(name, "--side and --follow miss the ball");
+	if (options->plot && !plot_format_known(options->plot))
+		return cmd_bad_input("--plot: \"%s\" ends neither in .svg nor in .png", options->plot);
 	return CMD_OK;
 }
 
 /* ---- from options to a simulation -------------------------------------------------------------------------------- */
 
-static int set_shot(struct run *run, const struct options *options)
+static int set_shot(struct run *run, const struct simulate_line *options)
 {
 	const struct position *position = &run->position;
 	run->cue = position_cue(position);
-	if (!options->has_speed && !position->has_velocity)
+	bool has_speed = !isnan(options->speed);
+	if (!has_speed && !position->has_velocity)
 		return cmd_bad_input("%s: neither a V line nor --speed and --angle", options->position);
 	if (run->cue < 0)
 		return cmd_bad_input("%s: no cue ball to strike", options->position);
 	run->shot = (struct shot){
 		.side = options->side, .follow = options->follow, .elevation = options->elevation * M_PI / 180};
-	if (options->has_speed) {
+	if (has_speed) {
 		run->shot.angle = options->angle * M_PI / 180;
 		run->shot.speed = options->speed / mm;
 	} else {
@@ -154,15 +118,15 @@ static int set_shot(struct run *run, const struct options *options)
 	return CMD_OK;
 }
 
-static int prepare(struct run *run, const struct options *options)
+static int prepare(struct run *run, const struct simulate_line *options)
 {
 	char err[CMD_ERROR_SIZE];
 	int status = cmd_config(&run->config, options->config);
 	if (status != CMD_OK)
 		return status;
 	run->model = run->config.model;
-	if (options->model && !model_from_name(options->model, &run->model))
-		return cmd_bad_input("--model: found \"%s\", allowed %s", options->model, model_names());
+	if (options->model)
+		model_from_name(options->model, &run->model); /* the table of options knows the names */
 	if (position_read(&run->position, &run->config.table, options->position, err, sizeof err) < 0)
 		return cmd_bad_input("%s", err);
 	return set_shot(run, options);
@@ -286,10 +250,14 @@ static int simulate_shot_file(const char *path)
 
 int cmd_simulate(int argc, char **argv)
 {
-	struct options options = {0};
-	int status = parse(&options, argc, argv);
+	struct simulate_line options = {.speed = NAN, .angle = NAN};
+	int first, status = cmd_options(&simulate_options, argc, argv, &options, &first);
 	if (status != CMD_OK)
 		return status < 0 ? CMD_OK : status;
+	options.position = argv[first];
+	status = check(&options, argv[0]);
+	if (status != CMD_OK)
+		return status;
 	if (options.shot_file)
 		return simulate_shot_file(options.shot_file);
 	struct run *run = calloc(1, sizeof *run);
