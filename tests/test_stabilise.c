@@ -32,6 +32,20 @@ START_TEST(test_resting_ball_settles)
 }
 END_TEST
 
+/* However long a ball has rested: what a slow drift of the camera moves it by is taken over within seconds. */
+START_TEST(test_long_rest_does_not_stiffen)
+{
+	struct stabiliser s = stabilise_begin((vec2){0, 0}, 0);
+	int i = 1;
+	for (; i < 5000; i++)
+		stabilise_add(&s, (vec2){0, 0}, i * dt, noise);
+	for (; i < 5300; i++)
+		stabilise_add(&s, (vec2){2 * noise, 0}, i * dt, noise);
+	ck_assert(!s.moving);
+	ck_assert_double_gt(s.pos.x, 0.9 * 2 * noise);
+}
+END_TEST
+
 START_TEST(test_rolling_ball_does_not_lag)
 {
 	struct random r = random_begin("stabilise_roll");
@@ -166,6 +180,7 @@ Suite *test_suite(void)
 	Suite *suite = suite_create("stabilise");
 	TCase *tc = tcase_create("stabilise");
 	tcase_add_test(tc, test_resting_ball_settles);
+	tcase_add_test(tc, test_long_rest_does_not_stiffen);
 	tcase_add_test(tc, test_rolling_ball_does_not_lag);
 	tcase_add_test(tc, test_ball_comes_to_rest_where_it_is);
 	tcase_add_test(tc, test_one_outlier_moves_nothing);

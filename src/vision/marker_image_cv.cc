@@ -31,8 +31,7 @@ bool marker_bits(int dictionary_count, int dictionary_bits, int id, uint8_t out[
 		return false;
 	try {
 		cv::Mat bytes = bytes_of(dictionary_count, dictionary_bits);
-		cv::Mat bits =
-			cv::aruco::Dictionary::getBitsFromByteList(bytes.rowRange(id, id + 1), dictionary_bits);
+		cv::Mat bits = cv::aruco::Dictionary::getBitsFromByteList(bytes.rowRange(id, id + 1), dictionary_bits);
 		for (int i = 0; i < dictionary_bits * dictionary_bits; i++)
 			out[i] = bits.at<uint8_t>(i / dictionary_bits, i % dictionary_bits);
 	} catch (const std::exception &) {

@@ -70,7 +70,8 @@ void prepare(marker_finder *f, int dictionary_count, int dictionary_bits)
 	/* The window stays what it is, also for small markers. */
 	parameters.relativeCornerRefinmentWinSize = 10;
 #endif
-	f->detector = cv::aruco::ArucoDetector(cv::aruco::extendDictionary(dictionary_count, dictionary_bits), parameters);
+	f->detector =
+		cv::aruco::ArucoDetector(cv::aruco::extendDictionary(dictionary_count, dictionary_bits), parameters);
 }
 
 void detect(marker_finder *f)

@@ -21,8 +21,6 @@ static const double START_TIME = 20; /* s that vision may take until it says tha
 static const double FRAME_TIME = 2;  /* s it may take for a frame; it is sent again once */
 static const double STOP_TIME = 3;   /* s it may take to end */
 
-extern char **environ;
-
 struct replay {
 	struct bus *bus;	      /* owned */
 	pid_t vision;		      /* 0: does not run */
