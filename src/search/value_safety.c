@@ -3,17 +3,10 @@
 
 #include "search/value_state.h"
 
-enum { FAN = 720, DIRECTIONS = 96, FAN_EVENTS = 16, SPEED_COUNT = 6 };
-static const double SPEEDS[SPEED_COUNT] = {0.6, 1.0, 1.6, 2.4, 3.4, 4.6};
-static const double FAN_SPEED = 2.4;	/* m/s, for finding out what is met first */
-static const double FLUKE_CHANCE = 0.4; /* of a pot that a fan found, until it is sampled */
-
-struct fan {
-	struct value_search *value;
-	double angle[FAN];
-	int count;
-	struct stroke best[DIRECTIONS][2];
-};
+enum { DIRECTIONS_MIN = 64, FAN_EVENTS = 16, SPEED_COUNT = 8, TRIALS = 6 };
+static const double SPEEDS[SPEED_COUNT] = {0.6, 0.9, 1.3, 1.8, 2.4, 3.1, 3.9, 4.8};
+static const double FAN_SPEED = 2.4;  /* m/s, for finding out what is met first */
+static const double FAN_SHARE = 0.15; /* of all simulations */
 
 /* The object ball that is met first in that direction; -1 none. */
 static int first_met(struct value_search *v, struct value_worker *worker, const struct value_root *root, double angle)
@@ -45,9 +38,11 @@ static void find_directions(struct fan *fan)
 			fan->angle[found++] = angle;
 	}
 	v->worker[0].sims += FAN / 8;
-	fan->count = found < DIRECTIONS ? found : DIRECTIONS;
-	for (int i = 0; i < fan->count && found > DIRECTIONS; i++)
-		fan->angle[i] = fan->angle[i * found / DIRECTIONS];
+	int most = (int)(FAN_SHARE * (double)v->request.sims / SPEED_COUNT);
+	most = most < DIRECTIONS_MIN ? DIRECTIONS_MIN : most > FAN_DIRECTIONS ? FAN_DIRECTIONS : most;
+	fan->count = found < most ? found : most;
+	for (int i = 0; i < fan->count && found > most; i++)
+		fan->angle[i] = fan->angle[i * found / most];
 }
 
 /* What falls by rule makes the contact a pot: plants, cushions and kisses that no chain was built for. */
@@ -63,6 +58,19 @@ static void name_pot(const struct value_search *v, struct record *record)
 		record->pocket = record->potted[i].pocket;
 		return;
 	}
+}
+
+/* How often a pot that the fan found falls, by a few samples. */
+static double chance_of(struct value_search *v, struct value_worker *worker, const struct record *record)
+{
+	int good = 0;
+	for (int i = 0; i < TRIALS; i++) {
+		struct record trial = *record;
+		struct rules_outcome outcome;
+		trial.shot = player_error_apply(&v->estimator.error, &record->shot, &v->point[i]);
+		good += value_play(v, worker, 0, &trial, &outcome) && trial.foul == 0 && shot_is_as_meant(&trial);
+	}
+	return (good + 0.5) / (TRIALS + 1);
 }
 
 static void direction_item(void *context, int item, int worker)
@@ -88,7 +96,7 @@ static void direction_item(void *context, int item, int worker)
 		stroke.value = value_of_outcome(v, &v->worker[worker], record, &outcome, false);
 		name_pot(v, record);
 		if (record->target >= 0)
-			stroke.value *= FLUKE_CHANCE;
+			stroke.value *= chance_of(v, &v->worker[worker], record);
 		if (stroke.value > fan->best[item][0].value) {
 			fan->best[item][1] = fan->best[item][0];
 			fan->best[item][0] = stroke;
@@ -115,13 +123,14 @@ static void add(struct value_search *v, const struct stroke *stroke, int first)
 
 void value_find_safeties(struct value_search *v)
 {
-	struct fan fan = {.value = v};
-	find_directions(&fan);
-	pool_for(v->pool, fan.count, direction_item, &fan);
+	struct fan *fan = &v->fan;
+	fan->value = v;
+	find_directions(fan);
+	pool_for(v->pool, fan->count, direction_item, fan);
 	int first = v->stroke_count;
-	for (int i = 0; i < fan.count; i++)
+	for (int i = 0; i < fan->count; i++)
 		for (int k = 0; k < 2; k++)
-			add(v, &fan.best[i][k], first);
+			add(v, &fan->best[i][k], first);
 	for (int i = first; i < v->stroke_count; i++)
 		v->stroke[i].key = (uint32_t)i;
 	value_sort(v);

@@ -15,7 +15,8 @@ enum {
 	VALUE_REFINED = 48,  /* neighbours of the leaders */
 	VALUE_STROKES = VALUE_POTS * VALUE_PER_POT + VALUE_ADDED + VALUE_SAFETIES + VALUE_REFINED,
 	VALUE_SAMPLES = 512, /* points of the player's error */
-	VALUE_ACROSS = 14    /* speeds or directions of contact shots tried at each */
+	FAN = 1440,	     /* directions that are looked into */
+	FAN_DIRECTIONS = 480 /* and of these played */
 };
 
 /* A pot of one of the roots, to be opened. */
@@ -27,6 +28,14 @@ struct opening {
 struct value_worker {
 	struct workspace work;
 	uint64_t sims;
+};
+
+/* Contact shots in many directions: the two best of each. */
+struct fan {
+	struct value_search *value;
+	double angle[FAN];
+	int count;
+	struct stroke best[FAN_DIRECTIONS][2];
 };
 
 struct value_search {
@@ -47,9 +56,10 @@ struct value_search {
 	struct stroke stroke[VALUE_STROKES];
 	int stroke_count;
 	uint16_t order[VALUE_STROKES]; /* indices of strokes, best first */
-	int to_sample;		       /* of the running round: samples that each stroke shall have */
-	bool deep;		       /* of the running round: next shots are searched */
-	int first;		       /* of the running round: index of the first stroke of a range, -1: by order */
+	struct fan fan;
+	int to_sample; /* of the running round: samples that each stroke shall have */
+	bool deep;     /* of the running round: next shots are searched */
+	int first;     /* of the running round: index of the first stroke of a range, -1: by order */
 };
 
 bool value_is_over(const struct value_search *value);
