@@ -16,9 +16,10 @@ static const char *const wanted[] = {"no argument", "seconds", "the id of a requ
 /* clang-format off: a table is read by its columns. */
 #define CONTROLS(ROW)                                                                                                  \
 	ROW("pause", ARGUMENT_NONE)                                                                                    \
-	ROW("resume", ARGUMENT_NONE) ROW("infinity", ARGUMENT_NONE) ROW("next", ARGUMENT_NONE)                         \
-		ROW("previous", ARGUMENT_NONE) ROW("halo", ARGUMENT_NONE) ROW("paths", ARGUMENT_NONE)                  \
-			ROW("table", ARGUMENT_NONE) ROW("info", ARGUMENT_NONE) ROW("animation", ARGUMENT_NONE)         \
+	ROW("resume", ARGUMENT_NONE)                                                                                   \
+	ROW("infinity", ARGUMENT_NONE) ROW("next", ARGUMENT_NONE) ROW("previous", ARGUMENT_NONE)                       \
+		ROW("halo", ARGUMENT_NONE) ROW("paths", ARGUMENT_NONE) ROW("table", ARGUMENT_NONE)                     \
+			ROW("info", ARGUMENT_NONE) ROW("animation", ARGUMENT_NONE)                                     \
 				ROW("animation-stop", ARGUMENT_NONE) ROW("animation-restart", ARGUMENT_NONE)           \
 					ROW("animation-seek", ARGUMENT_SECONDS) ROW("snapshot", ARGUMENT_FILE)         \
 						ROW("cancel", ARGUMENT_ID)

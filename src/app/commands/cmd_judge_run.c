@@ -91,8 +91,7 @@ static const struct channel *channel_of(const char *name)
 
 static void forget_old(struct run *r)
 {
-	while (r->kept_count > 0 &&
-	       1e-6 * (double)(r->last - r->kept[r->kept_first].utime) > r->options->keep) {
+	while (r->kept_count > 0 && 1e-6 * (double)(r->last - r->kept[r->kept_first].utime) > r->options->keep) {
 		free(r->kept[r->kept_first++].data);
 		r->kept_count--;
 	}
@@ -101,7 +100,7 @@ static void forget_old(struct run *r)
 /* Takes the data. Without memory a replay has a gap. */
 static void keep(struct run *r, const struct kept *event)
 {
-	if (r->kept_first + r->kept_count == r->kept_capacity) {
+	if (r->kept_first > 0 && r->kept_first + r->kept_count == r->kept_capacity) {
 		memmove(r->kept, r->kept + r->kept_first, r->kept_count * sizeof *r->kept);
 		r->kept_first = 0;
 	}
@@ -167,8 +166,8 @@ static void tell_finding(struct run *r)
 
 static json_t *times_json(const struct judge_times *t)
 {
-	return json_pack("{s:f,s:f,s:f,s:I}", "median", judge_times_share(t, 0.5), "p99", judge_times_share(t, 0.99), "max",
-			 t->max, "count", (json_int_t)t->count);
+	return json_pack("{s:f,s:f,s:f,s:I}", "median", judge_times_share(t, 0.5), "p99", judge_times_share(t, 0.99),
+			 "max", t->max, "count", (json_int_t)t->count);
 }
 
 static json_t *causes_json(const struct judge_report *p)
@@ -390,7 +389,8 @@ static void block_signals(void)
 	sigprocmask(SIG_BLOCK, &set, NULL);
 }
 
-static int listen_to(sd_event *event, struct bus *bus, struct tap tap[CHANNEL_COUNT], const struct judge_options *options)
+static int listen_to(sd_event *event, struct bus *bus, struct tap tap[CHANNEL_COUNT],
+		     const struct judge_options *options)
 {
 	int code = sd_event_add_signal(event, NULL, SIGINT, on_signal, NULL);
 	code = code < 0 ? code : sd_event_add_signal(event, NULL, SIGTERM, on_signal, NULL);
@@ -400,8 +400,8 @@ static int listen_to(sd_event *event, struct bus *bus, struct tap tap[CHANNEL_CO
 						  on_time, NULL);
 	for (int i = 0; i < CHANNEL_COUNT && code >= 0; i++)
 		if (channels[i].feed || options->out)
-			code = bus_subscribe(bus, &(struct bus_subscription){channels[i].name, channels[i].type, BUS_EACH,
-									     on_message, &tap[i]});
+			code = bus_subscribe(bus, &(struct bus_subscription){channels[i].name, channels[i].type,
+									     BUS_EACH, on_message, &tap[i]});
 	return code;
 }
 

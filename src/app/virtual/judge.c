@@ -9,11 +9,11 @@
 #include "search/plan.h"
 #include "search/rules.h"
 
-static const double PLACE_MAX = 0.005;	    /* m a ball asked for may lie off */
-static const double MOVED = 0.0005;	    /* m: a ball that lies elsewhere by more is a new position */
-static const double HALO_OFF = 0.010;	    /* m: a ring lies at a ball's old place */
-static const int64_t SETTLED_US = 1000000;  /* a frame's belief is counted after so much rest */
-static const int64_t SILENT_US = 5000000;   /* a rest of so long without a request is one too long */
+static const double PLACE_MAX = 0.005;	      /* m a ball asked for may lie off */
+static const double MOVED = 0.0005;	      /* m: a ball that lies elsewhere by more is a new position */
+static const double HALO_OFF = 0.010;	      /* m: a ring lies at a ball's old place */
+static const int64_t SETTLED_US = 1000000;    /* a frame's belief is counted after so much rest */
+static const int64_t SILENT_US = 5000000;     /* a rest of so long without a request is one too long */
 static const int64_t STALE_TOLD_US = 2000000; /* light for a wrong position that long is told */
 
 const char *judge_cause_name(enum judge_cause cause)
@@ -68,10 +68,10 @@ bool judge_finding(struct judge *j, char *out, size_t size)
 
 static enum judge_cause cause_of(const struct judge_match *m)
 {
-	return m->doubles ? JUDGE_DOUBLE
-	       : m->extra ? JUDGE_GHOST
-	       : m->missing ? JUDGE_MISSING
-	       : m->colour_wrong ? JUDGE_COLOUR
+	return m->doubles		  ? JUDGE_DOUBLE
+	       : m->extra		  ? JUDGE_GHOST
+	       : m->missing		  ? JUDGE_MISSING
+	       : m->colour_wrong	  ? JUDGE_COLOUR
 	       : m->max_error > PLACE_MAX ? JUDGE_PLACE
 					  : JUDGE_CAUSE_COUNT;
 }
@@ -289,7 +289,8 @@ void judge_truth(struct judge *j, int64_t now, const billiard_table_state_t *tru
 		begin_rest(j, position, truth->utime);
 	} else if (!j->rest_told && j->rest_requests == 0 && now - j->rest_begin > SILENT_US) {
 		j->rest_told = true;
-		find(j, "rest %lld: silent: no request for %.0f s", (long long)j->report.rests, 1e-6 * (double)SILENT_US);
+		find(j, "rest %lld: silent: no request for %.0f s", (long long)j->report.rests,
+		     1e-6 * (double)SILENT_US);
 	}
 	watch_light(j, now);
 }

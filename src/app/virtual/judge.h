@@ -13,9 +13,9 @@
 #include "lcmtypes/billiard_table_state_t.h"
 
 enum {
-	JUDGE_TRUTHS = 256,    /* remembered, to find the one of a frame */
-	JUDGE_REQUESTS = 16,   /* remembered */
-	JUDGE_MS_MAX = 60000,  /* times above count as this, ms */
+	JUDGE_TRUTHS = 256,   /* remembered, to find the one of a frame */
+	JUDGE_REQUESTS = 16,  /* remembered */
+	JUDGE_MS_MAX = 60000, /* times above count as this, ms */
 	JUDGE_TEXT_SIZE = 240
 };
 
@@ -83,7 +83,7 @@ struct judge {
 	int rest_requests;
 	/* The game, as far as what fell tells it. */
 	bool cue_fell;
-	int on; /* enum rules_on */
+	int on;			      /* enum rules_on */
 	struct judge_position before; /* when the shot began */
 	uint32_t fallen;	      /* balls of before that are gone, by bit */
 	/* Requests and light. */
