@@ -26,7 +26,7 @@ VISION := calibration camera colour detector fit linear marker_edges outline pos
 VISION_CV := capture_cv image_io_cv markers_cv marker_image_cv
 # app: what the programs share, room by room
 APP_PROCESS := ball_message bus clock frame_slot frame_source message_check message_table options process supervisor text
-APP_CONFIG := config config_reader config_table config_vision text_file save position shot_file colour_file
+APP_CONFIG := config config_default config_reader config_table config_vision text_file save position shot_file colour_file
 APP_CONTROL := fsm stability controller
 APP_LIGHT := animation draw draw_field draw_path draw_proposal keyframe picture render window
 APP_PLANNER := plan_check plan_message planner_service request_message
@@ -181,6 +181,9 @@ $(BUILD)/bench/%.o: bench/%.cc
 $(BUILD)/fuzz/%.o: fuzz/%.c
 	@mkdir -p $(@D)
 	$(call say,CC,$<)$(CC) $(CFLAGS_ALL) $(APP_CFLAGS) -c $< -o $@
+
+# The shipped configuration is in it: the defaults of every other one.
+$(BUILD)/src/app/config/config_default.o: config/thesis-table.conf
 
 # Only the application sees LCM, libconfig, Cairo, SDL and systemd.
 $(BUILD)/src/app/%.o: ROOM_CFLAGS = $(APP_CFLAGS)

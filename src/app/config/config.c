@@ -137,24 +137,56 @@ static int finish(struct config_reader *reader, const config_t *settings, struct
 
 /* ---- the file ---------------------------------------------------------------------------------------------------- */
 
-static int read_settings(struct config *config, config_t *settings, const char *path, const char *text, char *err,
-			 size_t err_size)
+/* Where messages go, and which file they name. */
+static int parse(config_t *settings, const char *text, const struct config_reader *reader)
 {
 	config_set_options(settings, CONFIG_OPTION_AUTOCONVERT);
-	if (config_read_string(settings, text) != CONFIG_TRUE) {
-		const char *file = config_error_file(settings) ? config_error_file(settings) : path;
-		snprintf(err, err_size, "%s:%d: %s", file, config_error_line(settings), config_error_text(settings));
-		return -EINVAL;
-	}
+	if (config_read_string(settings, text) == CONFIG_TRUE)
+		return 0;
+	const char *file = config_error_file(settings) ? config_error_file(settings) : reader->path;
+	snprintf(reader->err, reader->err_size, "%s:%d: %s", file, config_error_line(settings),
+		 config_error_text(settings));
+	return -EINVAL;
+}
+
+static int read_defaults(struct config_file *file, char *err, size_t err_size)
+{
+	struct config_reader reader = {.path = "the defaults", .err = err, .err_size = err_size};
+	config_t settings;
+	config_init(&settings);
+	int code = parse(&settings, config_default_text, &reader);
+	if (code == 0)
+		code = config_reader_group(&reader, config_root_setting(&settings), config_keys, file);
+	config_destroy(&settings);
+	return code;
+}
+
+/* The defaults with what the text says instead, checked as a whole. */
+static int read_file(struct config_file *file, const char *path, const char *text, char *err, size_t err_size)
+{
+	int code = read_defaults(file, err, err_size);
+	if (code < 0)
+		return code;
+	struct config_reader reader = {.path = path, .err = err, .err_size = err_size, .partial = true};
+	config_t settings;
+	config_init(&settings);
+	code = parse(&settings, text, &reader);
+	if (code == 0)
+		code = config_reader_group(&reader, config_root_setting(&settings), config_keys, file);
+	if (code == 0)
+		code = finish(&reader, &settings, file);
+	config_destroy(&settings);
+	return code;
+}
+
+static int read_settings(struct config *config, const char *path, const char *text, char *err, size_t err_size)
+{
 	struct config_file *file = calloc(1, sizeof *file);
 	if (!file) {
 		snprintf(err, err_size, "%s: out of memory", path);
 		return -ENOMEM;
 	}
-	struct config_reader reader = {.path = path, .err = err, .err_size = err_size};
-	int code = config_reader_group(&reader, config_root_setting(settings), config_keys, file);
-	if (code == 0)
-		code = finish(&reader, settings, file);
+	int code = read_file(file, path, text, err, err_size);
 	if (code == 0) {
 		snprintf(file->config.path, sizeof file->config.path, "%s", path);
 		*config = file->config;
@@ -174,10 +206,7 @@ int config_load(struct config *config, const char *path, char *err, size_t err_s
 	int code = text_file_read(path, CONFIG_SIZE_MAX, &text, &size, err, err_size);
 	if (code < 0)
 		return code;
-	config_t settings;
-	config_init(&settings);
-	code = read_settings(config, &settings, path, text, err, err_size);
-	config_destroy(&settings);
+	code = read_settings(config, path, text, err, err_size);
 	free(text);
 	return code;
 }

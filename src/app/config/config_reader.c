@@ -234,11 +234,13 @@ static int read_list(struct config_reader *reader, const config_setting_t *setti
 	if (config_setting_type(setting) != CONFIG_TYPE_LIST || !in_range(key, config_setting_length(setting)))
 		return fail(reader, setting, key);
 	int count = config_setting_length(setting);
+	struct config_reader whole = *reader;
+	whole.partial = false; /* a list replaces the default one: its elements lean on nothing */
 	for (int i = 0; i < count; i++) {
 		const config_setting_t *item = config_setting_get_elem((config_setting_t *)setting, (unsigned)i);
 		if (config_setting_type(item) != CONFIG_TYPE_GROUP)
 			return config_reader_fail(reader, item, NULL, "a group { }");
-		int code = config_reader_group(reader, item, key->keys, base + key->offset + (size_t)i * key->size);
+		int code = config_reader_group(&whole, item, key->keys, base + key->offset + (size_t)i * key->size);
 		if (code < 0)
 			return code;
 	}
@@ -283,6 +285,36 @@ static const struct config_key *find_key(const struct config_key *keys, const ch
 	return keys->name ? keys : NULL;
 }
 
+/* Letters to insert, delete or change: Levenshtein's distance, row by row. */
+static int distance(const char *a, const char *b)
+{
+	enum { LONGEST = 32 };
+	int row[LONGEST + 1], n = (int)strlen(b);
+	if (n > LONGEST)
+		return n;
+	for (int j = 0; j <= n; j++)
+		row[j] = j;
+	for (; *a; a++) {
+		int corner = row[0]++;
+		for (int j = 1; j <= n; j++) {
+			int change = corner + (*a != b[j - 1]);
+			int add = (row[j] < row[j - 1] ? row[j] : row[j - 1]) + 1;
+			corner = row[j];
+			row[j] = change < add ? change : add;
+		}
+	}
+	return row[n];
+}
+
+static const char *nearest(const struct config_key *keys, const char *name)
+{
+	const struct config_key *best = keys;
+	for (const struct config_key *key = keys; key->name; key++)
+		if (distance(name, key->name) < distance(name, best->name))
+			best = key;
+	return best->name;
+}
+
 static int refuse_unknown(struct config_reader *reader, const config_setting_t *group, const struct config_key *keys)
 {
 	for (int i = 0; i < config_setting_length(group); i++) {
@@ -293,7 +325,10 @@ static int refuse_unknown(struct config_reader *reader, const config_setting_t *
 		size_t n = (size_t)snprintf(allowed, sizeof allowed, "one of");
 		for (const struct config_key *key = keys; key->name && n < sizeof allowed; key++)
 			n += (size_t)snprintf(allowed + n, sizeof allowed - n, " %s", key->name);
-		return config_reader_fail(reader, member, "an unknown key", allowed);
+		char found[64];
+		snprintf(found, sizeof found, "an unknown key (nearest is %s)",
+			 nearest(keys, config_setting_name(member)));
+		return config_reader_fail(reader, member, found, allowed);
 	}
 	return 0;
 }
@@ -313,6 +348,8 @@ int config_reader_group(struct config_reader *reader, const config_setting_t *gr
 	int code = refuse_unknown(reader, group, keys);
 	for (const struct config_key *key = keys; code == 0 && key->name; key++) {
 		const config_setting_t *setting = config_setting_get_member((config_setting_t *)group, key->name);
+		if (!setting && reader->partial)
+			continue;
 		if (!setting && key->optional) {
 			fall_back(key, base);
 			continue;

@@ -56,6 +56,7 @@ struct config_reader {
 	const char *path; /* of the file, for messages */
 	char *err;	  /* borrowed */
 	size_t err_size;
+	bool partial; /* a key that is missing leaves base as it is; in elements of lists all are needed but for optional ones */
 };
 
 enum { CONFIG_ALLOWED_SIZE = 80 };

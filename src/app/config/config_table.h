@@ -15,6 +15,9 @@ struct config_file {
 	int memory_mib;
 };
 
+/* A whole file with every key that has no fallback of its own: the values of what another file leaves out. */
+extern const char config_default_text[];
+
 /* Offsets are from the start of struct config_file. */
 extern const struct config_key config_keys[];
 
