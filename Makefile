@@ -17,7 +17,7 @@ JOBS ?= $(shell nproc)
 
 # ---- sources: every file by hand -------------------------------------------------------------------------------------
 
-PHYSICS := ball bed collide contact contact_ball_real contact_mathavan contact_stronge event inverse model motion predict queue \
+PHYSICS := ball bed cluster collide contact contact_ball_real contact_mathavan contact_stronge event inverse model motion predict queue \
 	roots sim table trace
 SEARCH := acceptance budget candidate cost crew estimate export figures frontier geometry plan player_error pool rank refine request respot \
 	rules safety scheme share_queue share_steal share_windows shot slot solutions start state step stroke tolerance \
@@ -43,7 +43,7 @@ PROGRAMS := billiard billiard-vision billiard-planner billiard-infinity billiard
 TESTS := signature message_check animation fsm stability plan_message controller planner_service planner_bus bus process supervisor frame_source services loop replay \
 	config position save options cmd status plot draw render player table_camera contact_real contact_recorded shot_file \
 	rules cost geometry frontier pool scheme candidate plan plan_thesis plan_hard plan_complete tolerance refine solutions request \
-	ball bed contact predict event inverse model motion queue roots sim sim_hard table trace \
+	ball bed cluster contact predict event inverse model motion queue roots sim sim_hard table trace \
 	calibration camera pose scan fit colour stabilise image_io capture stages track vision vision_photos
 TESTS += shipped
 TEST_SHARED := harness brute_force bus_fixture service_fixture planner_client random poly_judge scenes search_scenes shot_compare thesis_lists vision_rig vision_scene

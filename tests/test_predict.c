@@ -200,7 +200,7 @@ END_TEST
 START_TEST(cushion_is_met_at_one_radius)
 {
 	struct table table = scene_box_table(2, 1);
-	struct model model = {BALL_MODEL_ELASTIC, CUSHION_MODEL_MIRROR, POCKET_MODEL_NONE, false, 0};
+	struct model model = {BALL_MODEL_ELASTIC, CUSHION_MODEL_MIRROR, POCKET_MODEL_NONE, false, 0, false};
 	struct random r = random_begin("cushion_is_met_at_one_radius");
 	struct solve_count count = {0};
 	int hits = 0;

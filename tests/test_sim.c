@@ -263,6 +263,17 @@ START_TEST(invariants_uneven)
 }
 END_TEST
 
+/* Contacts that overlap in time, from racks and positions with gaps of camera errors' size. */
+START_TEST(invariants_lasting_contacts)
+{
+	struct table table = scene_snooker_table();
+	table.material.hertz_modulus = 6.4e9;
+	struct model model = model_named("real");
+	ck_assert(model.lasting_contacts);
+	check_invariants("invariants real, lasting contacts", &table, &model, shots_wanted(3000));
+}
+END_TEST
+
 /* ---- repeatability ---- */
 
 static uint64_t break_hash(const char *name)
@@ -615,6 +626,7 @@ Suite *test_suite(void)
 	tcase_add_loop_test(invariants, invariants_snooker_table, 0, MODELS);
 	tcase_add_loop_test(invariants, invariants_no_pockets, 0, MODELS);
 	tcase_add_loop_test(invariants, invariants_uneven, 0, MODELS);
+	tcase_add_test(invariants, invariants_lasting_contacts);
 	suite_add_tcase(suite, invariants);
 	return suite;
 }

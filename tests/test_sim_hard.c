@@ -525,7 +525,7 @@ START_TEST(tip_hit_head_on)
 {
 	/* the sharp tip of a middle jaw of the thesis table, hit straight at it */
 	struct table table = scene_thesis_table();
-	struct model model = {BALL_MODEL_ELASTIC, CUSHION_MODEL_MIRROR, POCKET_MODEL_JAWS, false, 0};
+	struct model model = {BALL_MODEL_ELASTIC, CUSHION_MODEL_MIRROR, POCKET_MODEL_JAWS, false, 0, false};
 	vec2 tip = {-0.0575, -0.4715};
 	vec2 from = vec2_madd(tip, 0.3, vec2_from_angle(1.2));
 	vec2 way = vec2_sub(tip, from);

@@ -1,5 +1,6 @@
 #include "physics/collide.h"
 
+#include "physics/cluster.h"
 #include "physics/contact.h"
 #include "physics/contact_real.h"
 #include "physics/motion.h"
@@ -204,8 +205,24 @@ static void collide_jointly(struct sim *sim, const struct group *group)
 		lift_balls(sim, joint[i].a, joint[i].b);
 }
 
-void collide_balls(struct sim *sim, const struct group *group)
+/* Of a cluster's pairs those that still touch are held apart; what approaches again is a contact of its own. */
+static void lift_cluster(struct sim *sim, const struct group *group)
 {
+	for (int i = 0; i < group->count; i++) {
+		struct ball *a = &sim->ball[group->contact[i].ball], *b = &sim->ball[group->contact[i].other];
+		vec2 between = vec2_sub(b->pos, a->pos);
+		double touch = 2 * sim->table->ball_radius * (1 + TOUCH);
+		if (vec2_norm2(between) <= touch * touch && vec2_dot(vec2_sub(b->vel, a->vel), between) >= 0)
+			lift_balls(sim, a, b);
+	}
+}
+
+void collide_balls(struct sim *sim, struct group *group)
+{
+	if (cluster_collide(sim, group)) {
+		lift_cluster(sim, group);
+		return;
+	}
 	if (group->count > 1) {
 		collide_jointly(sim, group);
 		return;

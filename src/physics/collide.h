@@ -16,8 +16,9 @@ struct group {
 void collide_collect(const struct sim *sim, const struct event *first, struct group *group);
 
 /* Changes the balls of the group, which must have been advanced to its time. Of contacts that share a ball the impulses
- * are solved at once, so that mirrored positions give mirrored results. */
-void collide_balls(struct sim *sim, const struct group *group);
+ * are solved at once, so that mirrored positions give mirrored results. Where contacts last (cluster.h) the group grows
+ * by those that begin before they end. */
+void collide_balls(struct sim *sim, struct group *group);
 
 /* A ball at a cushion, tip or jaw; normal: unit, from the cushion towards the ball. */
 void collide_cushion(struct sim *sim, int ball, vec2 normal, double nose_height);

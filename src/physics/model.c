@@ -7,14 +7,14 @@
  * chain of contacts makes centimetres of. */
 static const double PROGRAM_GRID = 1e-6;
 
-/* Name, balls, cushions, pockets, thesis motion, contact grid. */
+/* Name, balls, cushions, pockets, thesis motion, contact grid, lasting contacts. */
 /* clang-format off: a table is read by its columns. */
 #define MODELS(ROW)                                                                                                    \
-	ROW("thesis", BALL_MODEL_THESIS, CUSHION_MODEL_THESIS, POCKET_MODEL_CIRCLE, true, PROGRAM_GRID)                \
-	ROW("simple", BALL_MODEL_RESTITUTION, CUSHION_MODEL_RESTITUTION, POCKET_MODEL_CIRCLE, false, 0)                \
-	ROW("simple-elastic", BALL_MODEL_ELASTIC, CUSHION_MODEL_MIRROR, POCKET_MODEL_CIRCLE, false, 0)                 \
-	ROW("real", BALL_MODEL_FRICTIONAL, CUSHION_MODEL_STRONGE, POCKET_MODEL_JAWS, false, 0)                         \
-	ROW("real-mathavan", BALL_MODEL_FRICTIONAL, CUSHION_MODEL_MATHAVAN, POCKET_MODEL_JAWS, false, 0)
+	ROW("thesis", BALL_MODEL_THESIS, CUSHION_MODEL_THESIS, POCKET_MODEL_CIRCLE, true, PROGRAM_GRID, false)         \
+	ROW("simple", BALL_MODEL_RESTITUTION, CUSHION_MODEL_RESTITUTION, POCKET_MODEL_CIRCLE, false, 0, false)         \
+	ROW("simple-elastic", BALL_MODEL_ELASTIC, CUSHION_MODEL_MIRROR, POCKET_MODEL_CIRCLE, false, 0, false)          \
+	ROW("real", BALL_MODEL_FRICTIONAL, CUSHION_MODEL_STRONGE, POCKET_MODEL_JAWS, false, 0, true)                   \
+	ROW("real-mathavan", BALL_MODEL_FRICTIONAL, CUSHION_MODEL_MATHAVAN, POCKET_MODEL_JAWS, false, 0, true)
 /* clang-format on */
 
 #define AS_MODEL(name, ...) {name, {__VA_ARGS__}},

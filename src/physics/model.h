@@ -32,6 +32,7 @@ struct model {
 	bool thesis_motion; /* no spin: a struck ball slides, then rolls; a cushion sets it rolling (4.6.4.9) */
 	/* SI; the coefficients of two balls' quartic (4.76 to 4.80) are rounded down to multiples of it; 0: exact */
 	double contact_grid;
+	bool lasting_contacts; /* contacts of balls that lie close overlap in time (cluster.h) */
 };
 
 /* The names of all models for people, with commas between: the one list of them. */

@@ -61,6 +61,7 @@ static int check_material(const struct material *m, char *err, size_t err_size)
 		{"mu_ball_b", m->mu_ball_b, 0, 2},
 		{"mu_ball_c", m->mu_ball_c, 0, 100},
 		{"stronge_omega", m->stronge_omega, 0, 100},
+		{"hertz_modulus", m->hertz_modulus, 0, 1e12},
 		{"topspin_variant", m->topspin_variant, 0, 2},
 	};
 	for (size_t i = 0; i < sizeof range / sizeof *range; i++) {

@@ -72,6 +72,7 @@ struct material {
 	double mu_cushion;			/* friction at a cushion */
 	double mu_ball_a, mu_ball_b, mu_ball_c; /* mu = a + b exp(-c v), v slip in m/s: Alciatore TP A.14 */
 	double stronge_omega;			/* frequency ratio of Stronge's compliant impact */
+	double hertz_modulus;			/* Pa, E / (1 - nu^2) of the balls; 0: contacts take no time */
 };
 
 struct table {

@@ -61,6 +61,21 @@ static const double CASCADE_LIFT = 1e-4;
 /* The thesis' topspin adds speed at each contact: in a cascade of one instant it counts for this many contacts only. */
 enum { TOPSPIN_MAX = 32 };
 
+/* ---- contacts that overlap in time ---- */
+
+/* m/s. Slower balls press on each other by less than a micrometre: they meet one after the other. */
+static const double CLUSTER_SPEED = 1e-3;
+/* Clusters of one instant: what still approaches after as many is resolved as contacts without time. */
+enum { CLUSTERS_MAX = 40 };
+/* Contact times at the speed of the first approach: gaps that close within them may matter. */
+static const double CLUSTER_REACH = 3;
+/* Steps of a contact's time. Error of a velocity about 2 / CLUSTER_STEPS^2; the cost grows with it. */
+enum { CLUSTER_STEPS = 20 };
+/* A rack's break is over after some 8 contact times; slower ends have long been separate contacts. */
+enum { CLUSTER_STEPS_MAX = 60 * CLUSTER_STEPS };
+/* Restitution below it is not damped more: the damping would overshoot. */
+static const double LEAST_RESTITUTION = 0.05;
+
 /* ---- pressing contacts ---- */
 
 /* s, and share of the time in which the cloth could take all their motion. Two bodies that press on each other meet

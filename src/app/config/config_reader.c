@@ -26,6 +26,7 @@ static const struct {
 	[UNIT_PX] = {" px", 1},
 	[UNIT_GREY] = {" grey levels", 1},
 	[UNIT_S_M] = {" s/m", 1},
+	[UNIT_GPA] = {" GPa", 1e-9},
 	[UNIT_MM_M] = {" mm/m", 1000},
 	[UNIT_MM_M2] = {" mm/m^2", 1000},
 };

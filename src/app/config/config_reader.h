@@ -32,6 +32,7 @@ enum config_unit {
 	UNIT_PX,
 	UNIT_GREY,
 	UNIT_S_M,
+	UNIT_GPA,
 	UNIT_MM_M,
 	UNIT_MM_M2,
 	UNIT_COUNT

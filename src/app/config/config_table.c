@@ -129,6 +129,7 @@ static const struct config_key material_keys[] = {
 	NUMBER("mu_ball_b", UNIT_NONE, 0, 1, AT(config.table.material.mu_ball_b)),
 	NUMBER("mu_ball_c", UNIT_S_M, 0, 100, AT(config.table.material.mu_ball_c)),
 	NUMBER("stronge_omega", UNIT_NONE, 1, 4, AT(config.table.material.stronge_omega)),
+	NUMBER_OR(6.4, "hertz_modulus", UNIT_GPA, 0, 1000, AT(config.table.material.hertz_modulus)),
 	END,
 };
 
