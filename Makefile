@@ -20,7 +20,7 @@ JOBS ?= $(shell nproc)
 PHYSICS := ball bed cluster collide contact contact_ball_real contact_mathavan contact_stronge event inverse model motion predict queue \
 	roots sim table trace
 SEARCH := acceptance budget candidate cost crew estimate export figures frontier geometry plan player_error pool rank refine request respot \
-	rules safety scheme share_queue share_steal share_windows shot slot solutions start state step stroke tolerance \
+	rules safety scheme share_queue share_steal share_windows shot slot snookered solutions start state step stroke tolerance \
 	value value_open value_race value_safety worth
 VISION := calibration camera colour detector fit linear marker_edges outline pose reason scan scan_changes scan_cloth scan_copy scan_marks scan_place seeds stabilise stages track vision
 VISION_CV := capture_cv image_io_cv markers_cv marker_image_cv
@@ -45,6 +45,7 @@ TESTS := signature message_check animation fsm stability plan_message controller
 	rules cost geometry frontier pool scheme candidate plan plan_thesis plan_hard plan_complete tolerance refine solutions request \
 	ball bed cluster contact predict event inverse model motion queue roots sim sim_hard table trace \
 	calibration camera pose scan fit colour stabilise image_io capture stages track vision vision_photos
+TESTS += rules_official match
 TESTS += shipped
 TEST_SHARED := harness brute_force bus_fixture service_fixture planner_client random poly_judge scenes search_scenes shot_compare thesis_lists vision_rig vision_scene
 TESTS += event_log judge_match

@@ -206,17 +206,17 @@ START_TEST(next_higher_spot)
 	struct game g;
 	vec2 pos;
 	begin(&g);
-	ck_assert(rules_respot(&g.table, g.ball, 0, COLOUR_BLUE, &pos));
+	ck_assert(rules_respot_thesis(&g.table, g.ball, 0, COLOUR_BLUE, &pos));
 	ck_assert_double_eq(pos.x, g.table.spot[COLOUR_BLUE].x);
 	add(&g, COLOUR_RED, g.table.spot[COLOUR_BLUE].x + 0.02, 0);
-	ck_assert(rules_respot(&g.table, g.ball, g.count, COLOUR_BLUE, &pos));
+	ck_assert(rules_respot_thesis(&g.table, g.ball, g.count, COLOUR_BLUE, &pos));
 	ck_assert_double_eq(pos.x, g.table.spot[COLOUR_PINK].x);
 	add(&g, COLOUR_RED, g.table.spot[COLOUR_PINK].x, 0);
-	ck_assert(rules_respot(&g.table, g.ball, g.count, COLOUR_BLUE, &pos));
+	ck_assert(rules_respot_thesis(&g.table, g.ball, g.count, COLOUR_BLUE, &pos));
 	ck_assert_double_eq(pos.x, g.table.spot[COLOUR_BLACK].x);
 	/* none above is free: the highest that is */
 	add(&g, COLOUR_RED, g.table.spot[COLOUR_BLACK].x - 0.01, 0);
-	ck_assert(rules_respot(&g.table, g.ball, g.count, COLOUR_BLUE, &pos));
+	ck_assert(rules_respot_thesis(&g.table, g.ball, g.count, COLOUR_BLUE, &pos));
 	ck_assert_double_eq(pos.x, g.table.spot[COLOUR_BROWN].x);
 	ck_assert_double_eq(pos.y, g.table.spot[COLOUR_BROWN].y);
 }
@@ -235,17 +235,17 @@ START_TEST(all_spots_occupied)
 	begin(&g);
 	occupy_spots(&g);
 	double d = 2 * g.table.ball_radius;
-	ck_assert(rules_respot(&g.table, g.ball, g.count, COLOUR_BLUE, &pos));
+	ck_assert(rules_respot_thesis(&g.table, g.ball, g.count, COLOUR_BLUE, &pos));
 	ck_assert_double_eq_tol(pos.x, g.table.spot[COLOUR_BLUE].x + d, 2e-9);
 	ck_assert_double_eq(pos.y, 0);
 	/* a ball in that place, off the line by half a radius: touching it from behind */
 	double dy = g.table.ball_radius / 2;
 	add(&g, COLOUR_RED, d * 1.2, dy);
-	ck_assert(rules_respot(&g.table, g.ball, g.count, COLOUR_BLUE, &pos));
+	ck_assert(rules_respot_thesis(&g.table, g.ball, g.count, COLOUR_BLUE, &pos));
 	ck_assert_double_eq_tol(pos.x, d * 1.2 + sqrt(d * d - dy * dy), 2e-9);
 	/* black: its spot is nearer to the cushion than a ball is wide, so the first free place of the grid: beside it
 	 */
-	ck_assert(rules_respot(&g.table, g.ball, g.count, COLOUR_BLACK, &pos));
+	ck_assert(rules_respot_thesis(&g.table, g.ball, g.count, COLOUR_BLACK, &pos));
 	ck_assert_double_eq_tol(pos.x, g.table.spot[COLOUR_BLACK].x, 1e-12);
 	ck_assert_double_eq_tol(pos.y, d, 1e-12);
 }
@@ -265,7 +265,7 @@ START_TEST(respots_are_free_and_nearest)
 			add(&g, COLOUR_RED, random_in(&random, -0.1, 0.9), random_in(&random, -0.08, 0.08));
 		enum ball_colour colour = (enum ball_colour)(COLOUR_YELLOW + n % 6);
 		vec2 spot = g.table.spot[colour];
-		ck_assert(rules_respot(&g.table, g.ball, g.count, colour, &pos));
+		ck_assert(rules_respot_thesis(&g.table, g.ball, g.count, colour, &pos));
 		ck_assert(respot_is_free(&g.table, g.ball, g.count, pos));
 		if (!respot_towards_top(&g.table, g.ball, g.count, spot, &pos))
 			continue;

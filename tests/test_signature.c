@@ -268,6 +268,7 @@ static struct plan_request request_of(const struct named_search *search, const s
 	scene_after_break(table, search->depth, ball);
 	struct plan_request request = scene_request(ball, BALL_MAX);
 	request.target = search->rails == 1 ? TARGET_RULES : TARGET_ANY;
+	request.state.any_first = strcmp(search->profile, "thesis") == 0;
 	request.depth = search->depth;
 	request.rails = search->rails;
 	request.balls = search->balls;

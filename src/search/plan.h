@@ -45,7 +45,8 @@ struct cost_profile {
 	int aims; /* 1: the middle of a pocket; 3, 5, ...: points across it too, for what the middle does not give */
 	enum plan_ranking ranking;
 	bool program_speed; /* start speeds by 4.33 for every leg, as the thesis' program; false: both branches */
-	bool any_first;	    /* do not ask which ball is struck first, as that program; false: by the rules */
+	bool any_first;	    /* do not ask which ball is struck first, as that program; false: by the rules. Requests with
+			       TARGET_RULES are by the rules in any case, unless their state says any_first, too */
 	bool keep_flukes; /* keep legal pots that are not the intended one, named by what falls, as that program does */
 };
 /* The constants of the thesis' program (errata.md, last tables). */

@@ -20,7 +20,8 @@ bool respot_is_free(const struct table *table, const struct ball *ball, int coun
 	return inside(table, pos);
 }
 
-bool respot_towards_top(const struct table *table, const struct ball *ball, int count, vec2 spot, vec2 *pos)
+/* way: 1 towards +x, -1 towards -x. */
+static bool towards(const struct table *table, const struct ball *ball, int count, vec2 spot, double way, vec2 *pos)
 {
 	double least = 2 * table->ball_radius + RESPOT_GAP;
 	bool found = false;
@@ -31,14 +32,25 @@ bool respot_towards_top(const struct table *table, const struct ball *ball, int 
 			double dy = ball[i].pos.y - spot.y;
 			if (ball[i].phase == BALL_POTTED || fabs(dy) >= least)
 				continue;
-			place.x = ball[i].pos.x + sqrt(least * least - dy * dy);
+			place.x = ball[i].pos.x + way * sqrt(least * least - dy * dy);
 		}
-		if (place.x >= spot.x && (!found || place.x < pos->x) && respot_is_free(table, ball, count, place)) {
+		if (way * (place.x - spot.x) >= 0 && (!found || way * (place.x - pos->x) < 0) &&
+		    respot_is_free(table, ball, count, place)) {
 			*pos = place;
 			found = true;
 		}
 	}
 	return found;
+}
+
+bool respot_towards_top(const struct table *table, const struct ball *ball, int count, vec2 spot, vec2 *pos)
+{
+	return towards(table, ball, count, spot, 1, pos);
+}
+
+bool respot_towards_bottom(const struct table *table, const struct ball *ball, int count, vec2 spot, vec2 *pos)
+{
+	return towards(table, ball, count, spot, -1, pos);
 }
 
 enum { GRID = 64, CELLS = (2 * GRID + 1) * (2 * GRID + 1) };

@@ -11,6 +11,9 @@ bool respot_is_free(const struct table *table, const struct ball *ball, int coun
  * contact with the ball that is in the way but for RESPOT_GAP. False when there is none before the cushion. */
 bool respot_towards_top(const struct table *table, const struct ball *ball, int count, vec2 spot, vec2 *pos);
 
+/* The same towards the bottom (baulk) cushion (-x). */
+bool respot_towards_bottom(const struct table *table, const struct ball *ball, int count, vec2 spot, vec2 *pos);
+
 /* Thesis figure 4.44: breadth first over a grid of one diameter around the spot; towards the black cushion, to either
  * side, then away from it. False when the whole bed is taken. */
 bool respot_breadth_first(const struct table *table, const struct ball *ball, int count, vec2 spot, vec2 *pos);

@@ -246,6 +246,16 @@ void match_visit(const struct match_setting *setting, struct match_side *side, i
 	count->points2 += points * points;
 }
 
+/* The frame is over, or, with level scores, the black comes back and the lot says who plays it. True when it is over. */
+static bool is_decided(struct game *game, const struct match_frame *frame, int *player)
+{
+	if (frame->points[0] != frame->points[1])
+		return true;
+	game->rules = rules_respot_black(game->setting->table, game->ball, game->count);
+	*player = uniform(&game->dice) < 0.5;
+	return false;
+}
+
 void match_frame_play(const struct match_setting *setting, struct match_side side[2], int index,
 		      struct match_count count[2], struct match_frame *frame)
 {
@@ -255,20 +265,20 @@ void match_frame_play(const struct match_setting *setting, struct match_side sid
 	int player = index % 2;
 	*frame = (struct match_frame){.winner = -1};
 	begin_game(&game, setting, index);
-	for (int i = 0; i < FRAME_SHOTS && !is_over(&game); i++, frame->shots++) {
+	for (int i = 0; i < FRAME_SHOTS; i++, frame->shots++) {
 		enum shot_result result = turn(&game, &side[player], &count[player], &outcome, &promised);
 		if (result == SHOT_NONE)
 			break;
-		game.rules = outcome.next;
-		if (result == SHOT_SCORED) {
-			frame->points[player] += outcome.points;
-			continue;
-		}
+		frame->points[player] += outcome.points;
 		frame->points[!player] += outcome.foul;
-		game.rules = rules_state_from_position(game.ball, game.count);
-		game.rules.in_hand = outcome.cue_potted;
-		count[player].visits++;
-		player = !player;
+		game.rules = outcome.next;
+		if (result != SHOT_SCORED) {
+			game.rules = rules_opponent(setting->table, &outcome, game.count);
+			count[player].visits++;
+			player = !player;
+		}
+		if ((outcome.ends || is_over(&game)) && is_decided(&game, frame, &player))
+			break;
 	}
 	if (frame->points[0] != frame->points[1])
 		frame->winner = frame->points[1] > frame->points[0];
