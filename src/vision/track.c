@@ -73,6 +73,9 @@ static void update(struct tracker *t, struct track *k, const struct sighting *c)
 	if (c->fixed)
 		return;
 	k->seen = *c;
+	/* Blurred, a ball looks like another; at rest, what looks like another is another. */
+	if (!k->steady.moving && colour_difference(&k->look, &c->look) > LOOK_SAME)
+		k->looks = 0;
 	stabilise_add(&k->steady, c->fit.pos, t->time, noise);
 	learn_look(k, &c->look);
 	k->confirmed = k->confirmed || (k->age >= CONFIRM_FRAMES && moves_like_a_ball(t, k));
@@ -223,8 +226,6 @@ static void believe(struct tracker *t, struct track *k, const struct sighting *c
 		t->judged = false;
 		return;
 	}
-	if (colour_difference(&k->look, &c->look) > LOOK_SAME)
-		k->looks = 0;
 	if (elsewhere)
 		k->steady = stabilise_begin(c->fit.pos, t->time);
 	update(t, k, c);
@@ -350,8 +351,8 @@ static bool is_disturbed(const struct scan *s, const struct fit *fit)
 
 static bool needs_fit(const struct tracker *t, const struct track *k)
 {
-	return k->steady.moving || k->misses > 0 || k->age < TURN || (t->frame + (unsigned)k->id) % TURN == 0 ||
-	       is_disturbed(&t->detector->scan, &k->seen.fit);
+	return k->steady.moving || k->steady.away > 0 || k->misses > 0 || k->age < TURN ||
+	       (t->frame + (unsigned)k->id) % TURN == 0 || is_disturbed(&t->detector->scan, &k->seen.fit);
 }
 
 /* A moving ball is looked for where it should be, then where it was. */
@@ -385,4 +386,7 @@ void tracker_step(struct tracker *t, const struct image *frame, const struct cam
 		t->judged = false;
 		t->hurry = 0;
 	}
+	/* Something has come that may be a ball. */
+	for (int i = 0; i < TRACK_MAX; i++)
+		t->judged = t->judged && (t->track[i].id == 0 || t->track[i].confirmed);
 }
