@@ -216,6 +216,21 @@ works '"plans":' plan --json --plans 2 --plot "$folder/plan.svg" "$folder/pot.tx
 [ -s "$folder/plan-1-1.svg" ]
 result $? "plan --plot draws each shot"
 
+# ---- match: the same seed and nodes, the same result at any number of games at a time
+match=(match -c config/snooker-12ft.conf --visits 2 --budget-nodes 1000 --a ranking=value --json)
+works '"visits":2,"points_per_visit":' "${match[@]}"
+sed 's/"ms_per_proposal":[0-9.]*//' "$folder/out" >"$folder/first"
+call "${match[@]}" --workers 2
+sed 's/"ms_per_proposal":[0-9.]*//' "$folder/out" | cmp -s - "$folder/first"
+result $? "match at one and two workers"
+works '"expected":null' match --visits 1 --budget-nodes 300 --a profile=thesis,ranking=thesis,model=thesis --json
+works '"frames":1,"won_a":' match --frames 1 --error-angle 1 --budget-nodes 300 --a ranking=value --b profile=beginner --json
+refused 'either --visits or --frames' match
+refused 'want a side --b' match --frames 1
+refused 'found "best", allowed thesis, success or value' match --visits 1 --a ranking=best
+refused 'allowed KEY=VALUE' match --visits 1 --a ranking
+refused 'no side has "dance=1"' match --visits 1 --a dance=1
+
 # What detect prints is a position.
 echo '{"image":"a.png","calibrated":true,"balls":[{"type":"WHITE","x":500,"y":250},{"type":"RED","x":850,"y":425}]}' >"$folder/seen.json"
 works '"target":"RED1"' plan --json "$folder/seen.json"

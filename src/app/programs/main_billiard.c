@@ -17,7 +17,8 @@ static const struct command {
 	{&simulate_options, cmd_simulate}, {&plan_options, cmd_plan},
 	{&run_options, cmd_run},	   {&status_options, cmd_status},
 	{&control_options, cmd_control},   {&demo_options, cmd_demo},
-	{&judge_options, cmd_judge},	   {&help_options, cmd_help},
+	{&judge_options, cmd_judge},	   {&match_options, cmd_match},
+	{&help_options, cmd_help},
 };
 enum { COMMAND_COUNT = sizeof command_table / sizeof *command_table };
 
