@@ -89,16 +89,17 @@ enum { CONTACTS = 256 };
 struct contacts {
 	struct table table;
 	struct ball ball[CONTACTS];
-	void (*law)(const struct table *table, vec2 normal, double nose_height, struct ball *ball);
+	void (*law)(const struct table *table, const struct nose *nose, struct ball *ball);
 };
 
 static void hit_cushion(void *context)
 {
 	const struct contacts *c = context;
+	struct nose nose = table_nose(&c->table, (vec2){0, 1}, 1.4 * c->table.ball_radius);
 	double sum = 0;
 	for (int i = 0; i < CONTACTS; i++) {
 		struct ball b = c->ball[i];
-		c->law(&c->table, (vec2){0, 1}, 1.4 * c->table.ball_radius, &b);
+		c->law(&c->table, &nose, &b);
 		sum += b.vel.x;
 	}
 	sink = sum;

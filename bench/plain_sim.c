@@ -305,6 +305,7 @@ static void resolve(struct plain *plain, const struct next *next)
 	const struct table *t = plain->table;
 	struct state *s = &plain->ball[next->ball];
 	struct ball a = to_ball(s, s->x), b;
+	struct nose nose;
 	switch (next->kind) {
 	case EVENT_BALL_BALL:
 		b = to_ball(&plain->ball[next->other], s->x);
@@ -314,10 +315,10 @@ static void resolve(struct plain *plain, const struct next *next)
 		break;
 	case EVENT_CUSHION:
 	case EVENT_JAW:
-		contact_cushion(t, plain->model, contact_normal(t, next, s),
-				next->kind == EVENT_JAW ? t->jaw[next->other].nose_height
-							: t->cushion[next->other].nose_height,
-				&a);
+		nose = table_nose(t, contact_normal(t, next, s),
+				  next->kind == EVENT_JAW ? t->jaw[next->other].nose_height
+							  : t->cushion[next->other].nose_height);
+		contact_cushion(t, plain->model, &nose, &a);
 		from_ball(&a, s);
 		break;
 	case EVENT_POCKET:

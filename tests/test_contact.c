@@ -130,7 +130,8 @@ START_TEST(cushions_mirror)
 		if (vec2_dot(v, n) >= 0)
 			continue;
 		struct ball b = moving((vec2){0, 0}, v, BALL_SLIDING, &table);
-		contact_cushion(&table, &model, n, 0.03, &b);
+		struct nose nose = table_nose(&table, n, 0.03);
+		contact_cushion(&table, &model, &nose, &b);
 		double e = i % 3 == 1 ? table.material.e_cushion : 1,
 		       keep = i % 3 == 2 ? 1 - table.material.loss_cushion : 1;
 		ck_assert_double_eq_tol(vec2_dot(b.vel, n), -e * keep * vec2_dot(v, n), 1e-14);
@@ -142,6 +143,58 @@ START_TEST(cushions_mirror)
 			ck_assert(b.spin[0] == 0 && b.spin[1] == 0);
 		}
 	}
+}
+END_TEST
+
+/* Restitution of a cushion that is hit harder is less, by the same share in every law that has one. */
+START_TEST(restitution_falls_with_speed)
+{
+	struct table table = scene_thesis_table();
+	const char *const names[] = {"simple", "real", "real-mathavan"};
+	table.material.cushion_fall = 0.08;
+	table.material.mu_slide = 1e-4; /* Mathavan's cloth takes nothing */
+	for (int k = 0; k < 3; k++) {
+		struct model model = model_named(names[k]);
+		for (double v = 0.01; v < 8; v *= 1.7) {
+			struct nose nose = table_nose(&table, (vec2){-1, 0}, table.ball_radius);
+			nose.mu = 0;
+			nose.e = 0.9;
+			struct ball b = moving((vec2){0, 0}, (vec2){v, 0.3}, BALL_SLIDING, &table);
+			contact_cushion(&table, &model, &nose, &b);
+			ck_assert_double_eq_tol(b.vel.x, -v * 0.9 / (1 + 0.08 * v), 1e-3 * v);
+			ck_assert_double_eq_tol(b.vel.y, 0.3, 1e-3 * v);
+		}
+	}
+}
+END_TEST
+
+/* Each cushion may have its own constants; the others keep the material's. */
+START_TEST(a_cushion_of_its_own)
+{
+	struct table table = scene_box_table(3, 1.5);
+	table.cushion[1].e = 0.5; /* the right rail */
+	table.cushion[1].mu = 0.4;
+	for (int right = 0; right < 2; right++) {
+		for (int k = 0; k < 2; k++) {
+			struct model model = model_named(k ? "real" : "simple");
+			model.pocket = POCKET_MODEL_NONE;
+			double x = (right ? 1 : -1) * (1.5 - table.ball_radius);
+			struct ball ball = moving((vec2){x, 0}, (vec2){right ? 1 : -1, 0.5}, BALL_ROLLING, &table),
+				    want = ball;
+			struct nose nose = table_nose(&table, (vec2){right ? -1 : 1, 0}, table.cushion[0].nose_height);
+			nose.e = right ? 0.5 : table.material.e_cushion;
+			nose.mu = right ? 0.4 : table.material.mu_cushion;
+			static struct sim sim;
+			struct event event;
+			sim_init(&sim, &table, &model, &ball, 1);
+			ck_assert(sim_step(&sim, &event) && event.kind == EVENT_CUSHION);
+			contact_cushion(&table, &model, &nose, &want);
+			ck_assert_double_eq_tol(sim.ball[0].vel.x, want.vel.x, 1e-12);
+			ck_assert_double_eq_tol(sim.ball[0].vel.y, want.vel.y, 1e-12);
+		}
+	}
+	table.cushion[1].e = 1.5;
+	ck_assert_int_ne(table_finish(&table, NULL, 0), 0);
 }
 END_TEST
 
@@ -300,6 +353,8 @@ Suite *test_suite(void)
 	tcase_add_test(tcase, thesis_without_topspin);
 	tcase_add_test(tcase, thesis_topspin_variants);
 	tcase_add_test(tcase, cushions_mirror);
+	tcase_add_test(tcase, restitution_falls_with_speed);
+	tcase_add_test(tcase, a_cushion_of_its_own);
 	tcase_add_test(tcase, one_on_two);
 	tcase_add_test(tcase, clusters);
 	tcase_add_test(tcase, what_is_one_instant);

@@ -130,7 +130,8 @@ static void check_cushion(const struct table *t, const json_t *json_table, const
 		normal = vec2_scale(normal, -1);
 	/* The recorder's contact normal points from the nose line, or a jaw's axis at nose height, to the ball's
 	 * centre. */
-	contact_cushion_stronge(t, normal, r + (number(c, "height") - r) * r / distance, &ball);
+	struct nose nose = table_nose(t, normal, r + (number(c, "height") - r) * r / distance);
+	contact_cushion_stronge(t, &nose, &ball);
 	tally->count[1 + circular]++;
 	tally->worst[1 + circular] = fmax(tally->worst[1 + circular], relative_difference(t, &ball, &want, speed));
 }
@@ -201,7 +202,8 @@ START_TEST(mathavan_rebounds_are_reproduced)
 		alpha *= M_PI / 180;
 		struct ball b = {.vel = {v * cos(alpha), v * sin(alpha)},
 				 .spin = {-top * sin(alpha), top * cos(alpha), side}};
-		contact_cushion_mathavan(&t, (vec2){0, -1}, 0.03675, &b);
+		struct nose nose = table_nose(&t, (vec2){0, -1}, 0.03675);
+		contact_cushion_mathavan(&t, &nose, &b);
 		worst_speed = fmax(worst_speed, fmax(fabs(b.vel.x - vx), fabs(b.vel.y - vy)));
 		for (int i = 0; i < 3; i++)
 			worst_spin = fmax(worst_spin, fabs(b.spin[i] - w[i]));

@@ -434,6 +434,35 @@ START_TEST(strike_gives_speed_and_spin)
 }
 END_TEST
 
+/* Squirt by TP A.31 for a ball of 30 end masses: 1.886 degrees at half a radius, away from the side; undone exactly by
+ * the cue's turn; none without an end mass. */
+START_TEST(squirt_and_its_inverse)
+{
+	struct table table = scene_snooker_table();
+	struct model model = model_named("real");
+	struct ball ball = ball_at(COLOUR_WHITE, (vec2){0, 0});
+	struct sim sim;
+	ck_assert(shot_squirt(&table, 0.5) == 0);
+	table.material.cue_end_mass = table.ball_mass / 30;
+	ck_assert_double_eq_tol(shot_squirt(&table, 0.5), atan(2.5 * 0.5 * sqrt(0.75) / (31 + 2.5 * 0.75)), 1e-15);
+	ck_assert_double_eq_tol(shot_squirt(&table, 0.5) * 180 / M_PI, 1.886, 1e-3);
+	ck_assert_double_eq(shot_squirt(&table, -0.3), -shot_squirt(&table, 0.3));
+	for (int k = -9; k <= 9; k++) {
+		double side = 0.1 * k, want = 0.7;
+		struct shot shot = {.angle = want + shot_squirt(&table, side), .speed = 3, .side = side, .follow = 0.1};
+		sim_init(&sim, &table, &model, &ball, 1);
+		sim_strike(&sim, 0, &shot);
+		ck_assert_double_eq_tol(atan2(sim.ball[0].vel.y, sim.ball[0].vel.x), want, 1e-15);
+		ck_assert_double_eq_tol(vec2_norm(sim.ball[0].vel), 3, 1e-14);
+		ck_assert(k * sim.ball[0].spin[2] <= 0);
+		shot.angle = 0;
+		sim_init(&sim, &table, &model, &ball, 1);
+		sim_strike(&sim, 0, &shot);
+		ck_assert(k == 0 || k * sim.ball[0].vel.y < 0); /* left of the middle: to the right */
+	}
+}
+END_TEST
+
 START_TEST(limits_stop_a_run)
 {
 	struct table table = scene_snooker_table();
@@ -613,6 +642,7 @@ Suite *test_suite(void)
 	suite_add_tcase(suite, repeat);
 	TCase *interface = tcase_create("interface");
 	tcase_add_test(interface, strike_gives_speed_and_spin);
+	tcase_add_test(interface, squirt_and_its_inverse);
 	tcase_add_test(interface, limits_stop_a_run);
 	tcase_add_test(interface, struck_again_while_moving);
 	tcase_add_test(interface, time_never_runs_back);

@@ -328,7 +328,7 @@ START_TEST(regions_leave_nothing_out)
 {
 	struct table table[2] = {scene_thesis_table(), scene_snooker_table()};
 	struct random r = random_begin("regions_leave_nothing_out");
-	for (int n = 0; n < 100000; n++) {
+	for (int n = 0; n < 20000; n++) {
 		const struct table *t = &table[n & 1];
 		vec2 p = {random_in(&r, -0.55, 0.55) * t->length, random_in(&r, -0.55, 0.55) * t->width};
 		uint32_t jaws = 0, cushions = 0, pockets = 0;
@@ -358,6 +358,7 @@ Suite *test_suite(void)
 {
 	Suite *suite = suite_create("table");
 	TCase *tcase = tcase_create("table");
+	tcase_set_timeout(tcase, 60);
 	tcase_add_test(tcase, normals_point_to_the_playing_side);
 	tcase_add_test(tcase, free_ends_get_tips);
 	tcase_add_test(tcase, regions_hold_what_is_near);

@@ -238,10 +238,10 @@ void collide_balls(struct sim *sim, struct group *group)
 		lift_balls(sim, a, b);
 }
 
-void collide_cushion(struct sim *sim, int ball, vec2 normal, double nose_height)
+void collide_cushion(struct sim *sim, int ball, const struct nose *nose)
 {
 	struct ball *b = &sim->ball[ball];
-	if (vec2_dot(b->vel, normal) < 0)
-		contact_cushion(sim->table, &sim->model, normal, nose_height, b);
-	lift_at_cushion(sim, normal, b);
+	if (vec2_dot(b->vel, nose->normal) < 0)
+		contact_cushion(sim->table, &sim->model, nose, b);
+	lift_at_cushion(sim, nose->normal, b);
 }

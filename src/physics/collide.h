@@ -20,7 +20,7 @@ void collide_collect(const struct sim *sim, const struct event *first, struct gr
  * by those that begin before they end. */
 void collide_balls(struct sim *sim, struct group *group);
 
-/* A ball at a cushion, tip or jaw; normal: unit, from the cushion towards the ball. */
-void collide_cushion(struct sim *sim, int ball, vec2 normal, double nose_height);
+/* A ball at a cushion, tip or jaw. */
+void collide_cushion(struct sim *sim, int ball, const struct nose *nose);
 
 #endif

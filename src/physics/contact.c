@@ -87,15 +87,15 @@ static void mirror(double restitution, vec2 normal, struct ball *ball)
 	ball->vel = vec2_madd(ball->vel, -(1 + restitution) * vec2_dot(ball->vel, normal), normal);
 }
 
-void contact_cushion(const struct table *table, const struct model *model, vec2 normal, double nose_height,
-		     struct ball *ball)
+void contact_cushion(const struct table *table, const struct model *model, const struct nose *nose, struct ball *ball)
 {
+	vec2 normal = nose->normal;
 	switch (model->cushion) {
 	case CUSHION_MODEL_MIRROR:
 		mirror(1, normal, ball);
 		break;
 	case CUSHION_MODEL_RESTITUTION:
-		mirror(table->material.e_cushion, normal, ball);
+		mirror(nose_restitution(table, nose, -vec2_dot(ball->vel, normal)), normal, ball);
 		break;
 	case CUSHION_MODEL_THESIS:
 		/* 4.62, 4.63 with (1 - E) for 1/(1 + E); rolls at once (4.6.4.9) */
@@ -104,10 +104,10 @@ void contact_cushion(const struct table *table, const struct model *model, vec2 
 		motion_roll(ball, table);
 		return;
 	case CUSHION_MODEL_STRONGE:
-		contact_cushion_stronge(table, normal, nose_height, ball);
+		contact_cushion_stronge(table, nose, ball);
 		break;
 	case CUSHION_MODEL_MATHAVAN:
-		contact_cushion_mathavan(table, normal, nose_height, ball);
+		contact_cushion_mathavan(table, nose, ball);
 		break;
 	}
 	motion_classify(ball, table);

@@ -8,9 +8,8 @@
 /* Two touching balls that approach. */
 void contact_balls(const struct table *table, const struct model *model, struct ball *a, struct ball *b);
 
-/* A ball that approaches a cushion; normal: unit, from the cushion towards the ball. */
-void contact_cushion(const struct table *table, const struct model *model, vec2 normal, double nose_height,
-		     struct ball *ball);
+/* A ball that approaches a cushion at nose->normal. */
+void contact_cushion(const struct table *table, const struct model *model, const struct nose *nose, struct ball *ball);
 
 /* Restitution of the model's frictionless part, and the share of speed that a contact leaves: what a simultaneous
  * contact of more than two balls is solved with. */

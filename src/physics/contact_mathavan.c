@@ -359,11 +359,10 @@ static bool integrate(struct impact *im, double target, double scale)
 	return false;
 }
 
-void contact_cushion_mathavan(const struct table *table, vec2 normal, double nose_height, struct ball *ball)
+void contact_cushion_mathavan(const struct table *table, const struct nose *nose, struct ball *ball)
 {
-	const struct material *m = &table->material;
 	double r = table->ball_radius;
-	vec2 into = vec2_scale(normal, -1), along = {into.y, -into.x};
+	vec2 into = vec2_scale(nose->normal, -1), along = {into.y, -into.x};
 	double vx = vec2_dot(along, ball->vel), vy = vec2_dot(into, ball->vel);
 	double wx = r * (along.x * ball->spin[0] + along.y * ball->spin[1]);
 	double wy = r * (into.x * ball->spin[0] + into.y * ball->spin[1]), wz = r * ball->spin[2];
@@ -372,16 +371,17 @@ void contact_cushion_mathavan(const struct table *table, vec2 normal, double nos
 		return;
 
 	/* Beyond these heights the ball would pass under or over the nose. */
-	double s = fmin(fmax(nose_height / r - 1, -0.9), 0.9), c = sqrt(1 - s * s);
+	double s = fmin(fmax(nose->height / r - 1, -0.9), 0.9), c = sqrt(1 - s * s);
 	double scale = fabs(vx) + vy + fabs(wx) + fabs(wy) + fabs(wz);
 	struct impact im = {.s = s,
 			    .c = c,
-			    .mu = {m->mu_cushion, m->mu_slide},
+			    .mu = {nose->mu, table->material.mu_slide},
 			    .rest_slip = IMPACT_REST_SLIP * scale,
 			    .z = {vx + wy * s - wz * c, wx - vy * s, vx - wy, vy + wx, 0}};
 	double first[2] = {im.z[I1], im.z[C1]};
 	bool ends = integrate(&im, NAN, scale);
-	ends = ends && integrate(&im, (1 - m->e_cushion * m->e_cushion) * im.z[WORK], scale);
+	double e = nose_restitution(table, nose, vy);
+	ends = ends && integrate(&im, (1 - e * e) * im.z[WORK], scale);
 	if (!ends) {
 		ball->vel = vec2_madd(ball->vel, -vy, into);
 		return;
@@ -390,11 +390,11 @@ void contact_cushion_mathavan(const struct table *table, vec2 normal, double nos
 	/* Impulses along x from the changes of the slips along x. */
 	double coupling = 1 - 2.5 * s, det = 3.5 * 3.5 - coupling * coupling;
 	double d1 = im.z[I1] - first[0], d2 = im.z[C1] - first[1];
-	double nose = (3.5 * d1 - coupling * d2) / det, cloth = (3.5 * d2 - coupling * d1) / det;
+	double push = (3.5 * d1 - coupling * d2) / det, cloth = (3.5 * d2 - coupling * d1) / det;
 	double after = velocity_into(&im, im.z), spin = im.z[C2] - after;
-	ball->vel = vec2_madd(vec2_madd(ball->vel, nose + cloth, along), fmin(after, 0) - vy, into);
-	vec2 turn = vec2_madd(vec2_scale(along, spin - wx), 2.5 * (s * nose - cloth), into);
+	ball->vel = vec2_madd(vec2_madd(ball->vel, push + cloth, along), fmin(after, 0) - vy, into);
+	vec2 turn = vec2_madd(vec2_scale(along, spin - wx), 2.5 * (s * push - cloth), into);
 	ball->spin[0] += turn.x / r;
 	ball->spin[1] += turn.y / r;
-	ball->spin[2] -= 2.5 / r * c * nose;
+	ball->spin[2] -= 2.5 / r * c * push;
 }

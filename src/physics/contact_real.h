@@ -20,19 +20,19 @@ vec2 contact_ball_friction(const struct table *table, const struct ball *a, cons
 void contact_ball_rub(const struct table *table, vec2 impulse, struct ball *a, struct ball *b);
 
 /* Compliant impact on a cushion (Stronge 2000, ch. 5): normal and tangential springs with frequency ratio stronge_omega
- * in (1, 2), restitution e_cushion > 1 / stronge_omega, Coulomb friction mu_cushion; outside of these ranges the spring
- * is taken as stiff. normal: unit, from the cushion towards the ball. The contact lies on the line from the ball's
- * centre to a nose one radius away at nose_height (m above the bed, 0 to 2 r): its angle above the horizontal has the
- * tangent nose_height / r - 1. The bed's reaction is left out, vertical velocity dropped. Precondition: the ball
+ * in (1, 2), restitution nose->e > 1 / stronge_omega, Coulomb friction nose->mu; outside of these ranges the spring
+ * is taken as stiff. The contact lies on the line from the ball's
+ * centre to a nose one radius away at nose->height (m above the bed, 0 to 2 r): its angle above the horizontal has the
+ * tangent nose->height / r - 1. The bed's reaction is left out, vertical velocity dropped. Precondition: the ball
  * approaches. */
-void contact_cushion_stronge(const struct table *table, vec2 normal, double nose_height, struct ball *ball);
+void contact_cushion_stronge(const struct table *table, const struct nose *nose, struct ball *ball);
 
-/* Impact on a cushion nose at nose_height (m, 0 to 2 r; 0.1 r to 1.9 r count), pressing the ball on the cloth
- * (Mathavan, Jackson, Parkin 2010): normal impulse integrated with friction at nose (mu_cushion) and cloth (mu_slide),
- * restitution e_cushion of the work done at the nose. Sticking at either contact is part of the law and handled as a
+/* Impact on a cushion nose at nose->height (m, 0 to 2 r; 0.1 r to 1.9 r count), pressing the ball on the cloth
+ * (Mathavan, Jackson, Parkin 2010): normal impulse integrated with friction at nose (nose->mu) and cloth (mu_slide),
+ * restitution nose->e of the work done at the nose. Sticking at either contact is part of the law and handled as a
  * mode of its own. The integration leaves an error below 1e-4 of the speed before (surface speed of the spin included).
  * With friction so high that the ball is wedged between nose and cloth it just stops at the cushion. Precondition: the
  * ball approaches. */
-void contact_cushion_mathavan(const struct table *table, vec2 normal, double nose_height, struct ball *ball);
+void contact_cushion_mathavan(const struct table *table, const struct nose *nose, struct ball *ball);
 
 #endif

@@ -90,12 +90,12 @@ static double slip_after(const struct compliance *c, double x)
 	return stick_rate(c, &s, time) - copysign(last, stick_stretch(c, &s, time));
 }
 
-void contact_cushion_stronge(const struct table *table, vec2 normal, double nose_height, struct ball *ball)
+void contact_cushion_stronge(const struct table *table, const struct nose *nose, struct ball *ball)
 {
-	const struct material *m = &table->material;
+	vec2 normal = nose->normal;
 	double r = table->ball_radius;
-	assert(nose_height >= 0 && nose_height <= 2 * r);
-	double slope = nose_height / r - 1, cosine = 1 / sqrt(1 + slope * slope), sine = slope * cosine;
+	assert(nose->height >= 0 && nose->height <= 2 * r);
+	double slope = nose->height / r - 1, cosine = 1 / sqrt(1 + slope * slope), sine = slope * cosine;
 	vec2 t = vec2_perp(normal);
 	/* Components along normal (n), across it (t) and up (z); the contact point is -r (cosine n - sine z) from the
 	 * centre. The contact's own frame: its normal cosine n - sine z, its tangents t and sine n + cosine z. */
@@ -108,10 +108,10 @@ void contact_cushion_stronge(const struct table *table, vec2 normal, double nose
 		return;
 	double slip_t = vt - r * (cosine * ball->spin[2] + sine * wn), slip_u = sine * vn + r * wt;
 	double slip = hypot(slip_t, slip_u);
-	double normal_impulse = (1 + m->e_cushion) * approach, along = 0, up = 0;
+	double e = nose_restitution(table, nose, approach), normal_impulse = (1 + e) * approach, along = 0, up = 0;
 	if (slip > 0) {
-		double omega = m->stronge_omega;
-		struct compliance c = {m->e_cushion, m->mu_cushion, omega, BETA / (omega * omega)};
+		double omega = table->material.stronge_omega;
+		struct compliance c = {e, nose->mu, omega, BETA / (omega * omega)};
 		double impulse = (slip_after(&c, slip / approach) * approach - slip) / BETA;
 		along = impulse * slip_t / slip;
 		up = impulse * slip_u / slip;

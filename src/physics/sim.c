@@ -93,6 +93,15 @@ bool shot_is_playable(const struct shot *shot)
 	       shot->elevation < SHOT_ELEVATION_MAX;
 }
 
+/* Alciatore TP A.31: the impulse that turns the ball also moves the cue's end aside, and the ball the other way. */
+double shot_squirt(const struct table *table, double side)
+{
+	double end = table->material.cue_end_mass, up = 1 - side * side;
+	if (end == 0)
+		return 0;
+	return atan(2.5 * side * sqrt(up) / (1 + table->ball_mass / end + 2.5 * up));
+}
+
 /* Offsets are measured across the cue. side > 0 (left of the line of aim) turns the ball clockwise seen from above,
  * spin z < 0; follow > 0 turns it forward. Instantaneous point impact: spin = 5 v / (2 r) times the offset (Leckie and
  * Greenspan 2006), v the speed along the cue. */
@@ -102,11 +111,13 @@ void sim_strike(struct sim *sim, int ball, const struct shot *shot)
 	assert(shot_is_playable(shot));
 	advance(sim, ball);
 	struct ball *b = &sim->ball[ball];
-	vec2 ahead = vec2_from_angle(shot->angle), right = {ahead.y, -ahead.x};
+	double squirt = shot_squirt(sim->table, shot->side);
+	vec2 way = vec2_from_angle(shot->angle - squirt), ahead = vec2_from_angle(shot->angle),
+	     right = {ahead.y, -ahead.x};
 	double cos_e = cos(shot->elevation), sin_e = sin(shot->elevation);
 	double k = sim->model.thesis_motion ? 0 : 2.5 * shot->speed / (cos_e * sim->table->ball_radius);
 	vec2 spin = vec2_add(vec2_scale(right, -k * shot->follow), vec2_scale(ahead, -k * shot->side * sin_e));
-	b->vel = vec2_scale(ahead, shot->speed);
+	b->vel = vec2_scale(way, shot->speed);
 	b->spin[0] = spin.x;
 	b->spin[1] = spin.y;
 	b->spin[2] = -k * shot->side * cos_e;
@@ -157,11 +168,16 @@ static void resolve_own(struct sim *sim, const struct event *event)
 	if (event->kind == EVENT_CUSHION) {
 		const struct cushion *c = &sim->table->cushion[event->other];
 		count_instant(sim);
-		collide_cushion(sim, i, predict_cushion_normal(c, ball->pos), c->nose_height);
+		struct nose nose = table_nose(sim->table, predict_cushion_normal(c, ball->pos), c->nose_height);
+		nose.e = c->e > 0 ? c->e : nose.e;
+		nose.mu = c->mu > 0 ? c->mu : nose.mu;
+		collide_cushion(sim, i, &nose);
 	} else if (event->kind == EVENT_JAW) {
 		const struct jaw *jaw = &sim->table->jaw[event->other];
 		count_instant(sim);
-		collide_cushion(sim, i, vec2_unit(vec2_sub(ball->pos, jaw->centre)), jaw->nose_height);
+		vec2 normal = vec2_unit(vec2_sub(ball->pos, jaw->centre));
+		struct nose nose = table_nose(sim->table, normal, jaw->nose_height);
+		collide_cushion(sim, i, &nose);
 	} else if (event->kind == EVENT_POCKET) {
 		pot(ball);
 	} else {

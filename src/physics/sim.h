@@ -28,6 +28,11 @@ struct shot {
  * lets a shot in. */
 bool shot_is_playable(const struct shot *shot);
 
+/* rad: a ball struck `side` left of its middle starts this much to the right of the cue's direction (Alciatore TP A.31;
+ * 0 while material.cue_end_mass is). So a ball that shall go at angle a wants the cue at a + shot_squirt(): the exact
+ * inverse, at every speed and height. */
+double shot_squirt(const struct table *table, double side);
+
 enum sim_end { SIM_AT_REST, SIM_TIME_LIMIT, SIM_EVENT_LIMIT };
 
 struct sim_limits {

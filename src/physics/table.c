@@ -60,6 +60,8 @@ static int check_material(const struct material *m, char *err, size_t err_size)
 		{"mu_ball_a", m->mu_ball_a, 0, 2},
 		{"mu_ball_b", m->mu_ball_b, 0, 2},
 		{"mu_ball_c", m->mu_ball_c, 0, 100},
+		{"cushion_fall", m->cushion_fall, 0, 1},
+		{"cue_end_mass", m->cue_end_mass, 0, 0.1},
 		{"stronge_omega", m->stronge_omega, 0, 100},
 		{"hertz_modulus", m->hertz_modulus, 0, 1e12},
 		{"topspin_variant", m->topspin_variant, 0, 2},
@@ -93,6 +95,10 @@ static int finish_cushion(struct table *t, int i, char *err, size_t err_size)
 	struct cushion *c = &t->cushion[i];
 	if (!vec2_is_finite(c->a) || !vec2_is_finite(c->b) || !in_range(c->nose_height, 0, 2 * t->ball_radius))
 		return refuse(err, err_size, "cushion %d: not finite, or its nose is not at a ball's height", i);
+	if (!in_range(c->e, 0, 1) || !in_range(c->mu, 0, 2))
+		return refuse(err, err_size,
+			      "cushion %d: restitution %g is not within 0 to 1, or friction %g not 0 to 2", i, c->e,
+			      c->mu);
 	c->span = vec2_dist(c->a, c->b);
 	if (c->span < 1e-3)
 		return refuse(err, err_size, "cushion %d is shorter than 1 mm", i);
@@ -221,6 +227,16 @@ int table_finish(struct table *table, char *err, size_t err_size)
 	if (r == 0)
 		finish_regions(table);
 	return r;
+}
+
+struct nose table_nose(const struct table *table, vec2 normal, double height)
+{
+	return (struct nose){normal, height, table->material.e_cushion, table->material.mu_cushion};
+}
+
+double nose_restitution(const struct table *table, const struct nose *nose, double speed)
+{
+	return nose->e / (1 + table->material.cushion_fall * speed);
 }
 
 int table_pocket(const struct table *table, const char *name)

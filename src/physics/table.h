@@ -20,6 +20,7 @@ struct cushion {
 	bool two_sided;	    /* a ball may touch it from either side */
 	bool open_ends;	    /* no sharp tips are added where no jaw covers its ends */
 	bool main_rail;	    /* one of the six long noses (mirrors of the search); false: a pocket's jaw */
+	double e, mu;	    /* restitution and friction of this one; 0: the material's */
 };
 
 /* A rounded jaw tip: a vertical cylinder that balls bounce off from outside. Radius 0 is a sharp tip. */
@@ -67,12 +68,21 @@ struct material {
 	double topspin_factor; /* A: m/s for variant 1, share for variant 2 */
 
 	/* models "simple" and "real" */
-	double e_ball;				/* restitution ball on ball */
-	double e_cushion;			/* restitution at a cushion */
-	double mu_cushion;			/* friction at a cushion */
+	double e_ball;	     /* restitution ball on ball */
+	double e_cushion;    /* restitution at a cushion */
+	double mu_cushion;   /* friction at a cushion */
+	double cushion_fall; /* s/m: restitution at approach speed v is e / (1 + cushion_fall v); 0: the same at all */
+	double cue_end_mass; /* kg that the cue's end moves aside with: squirt; 0: none */
 	double mu_ball_a, mu_ball_b, mu_ball_c; /* mu = a + b exp(-c v), v slip in m/s: Alciatore TP A.14 */
 	double stronge_omega;			/* frequency ratio of Stronge's compliant impact */
 	double hertz_modulus;			/* Pa, E / (1 - nu^2) of the balls; 0: contacts take no time */
+};
+
+/* Where a ball touches a cushion, a jaw or a tip, and what that is made of. */
+struct nose {
+	vec2 normal;   /* unit, from the nose towards the ball */
+	double height; /* m above the bed */
+	double e, mu;  /* restitution at a slow approach, friction */
 };
 
 struct table {
@@ -98,6 +108,12 @@ struct table {
  * no jaw covers, so that no ball slips through a corner. May be called again. Returns 0, or -EINVAL with the reason in
  * err. */
 int table_finish(struct table *table, char *err, size_t err_size);
+
+/* A nose of the table's material. */
+struct nose table_nose(const struct table *table, vec2 normal, double height);
+
+/* Restitution of a nose at an approach speed (m/s, at least 0). */
+double nose_restitution(const struct table *table, const struct nose *nose, double speed);
 
 /* Pocket of that name, -1 when there is none. */
 int table_pocket(const struct table *table, const char *name);

@@ -55,7 +55,7 @@ bool stroke_aim(const struct estimator *e, const struct model *model, const stru
 {
 	const struct ball pair[2] = {*cue, *object};
 	double slope = -pot->gain, last_miss = 0, last_angle = 0, half = 0;
-	aimed->shot.angle = pot->angle;
+	aimed->shot.angle = pot->angle + shot_squirt(e->table, aimed->shot.side);
 	for (int i = 0; i < STEPS; i++) {
 		vec2 vel, goal;
 		if (!object_velocity(e, model, pair, &aimed->shot, &vel) ||

@@ -67,6 +67,8 @@ static const struct config_key cushion_keys[] = {
 	POINT("from", IN(cushion, a)),
 	POINT("to", IN(cushion, b)),
 	FLAG("main_rail", IN(cushion, main_rail)),
+	NUMBER_OR(0, "e", UNIT_NONE, 0, 1, IN(cushion, e)),
+	NUMBER_OR(0, "mu", UNIT_NONE, 0, 1, IN(cushion, mu)),
 	FLAG("two_sided", IN(cushion, two_sided)),
 	END,
 };
@@ -125,6 +127,8 @@ static const struct config_key material_keys[] = {
 	NUMBER("e_ball", UNIT_NONE, 0.1, 1, AT(config.table.material.e_ball)),
 	NUMBER("e_cushion", UNIT_NONE, 0.1, 1, AT(config.table.material.e_cushion)),
 	NUMBER("mu_cushion", UNIT_NONE, 0, 1, AT(config.table.material.mu_cushion)),
+	NUMBER_OR(0, "cushion_fall", UNIT_S_M, 0, 1, AT(config.table.material.cushion_fall)),
+	NUMBER_OR(0, "cue_end_mass", UNIT_KG, 0, 0.1, AT(config.table.material.cue_end_mass)),
 	NUMBER("mu_ball_a", UNIT_NONE, 0, 1, AT(config.table.material.mu_ball_a)),
 	NUMBER("mu_ball_b", UNIT_NONE, 0, 1, AT(config.table.material.mu_ball_b)),
 	NUMBER("mu_ball_c", UNIT_S_M, 0, 100, AT(config.table.material.mu_ball_c)),
