@@ -37,6 +37,7 @@ APP_VIRTUAL += judge_match
 APP_COMMANDS += cmd_judge cmd_judge_replay cmd_match
 APP_VIRTUAL += judge
 APP_COMMANDS += cmd_judge_run
+APP_VIRTUAL += habits sensor_faults table_camera_arm drawn_shot
 # programs: src/app/programs/main_NAME.c becomes build/NAME
 PROGRAMS := billiard billiard-vision billiard-planner billiard-infinity billiard-projector billiard-table
 # tests/test_NAME.c each; tests/NAME.c shared by them
@@ -51,6 +52,7 @@ TESTS += shipped
 TEST_SHARED := harness brute_force bus_fixture service_fixture planner_client random poly_judge scenes search_scenes shot_compare thesis_lists vision_rig vision_scene
 TESTS += event_log judge_match
 TESTS += judge
+TESTS += habits sensor_faults
 # tests that are scripts: tests/NAME.sh, called with the build folder
 TEST_SCRIPTS := cli demo planner units build borders
 # tests/NAME.c: programs of their own that a test script compiles
@@ -133,7 +135,7 @@ FUZZ_O := $(call obj,fuzz,$(addprefix fuzz_,$(FUZZERS)))
 ROOM_O := $(foreach room,$(ROOMS),$(OBJECTS_$(room)))
 ALL_O := $(ROOM_O) $(PROGRAM_O) $(OBJECTS_tests) $(OBJECTS_bench) $(TEST_O) $(BENCH_O) $(FUZZ_O)
 
-.PHONY: FORCE all help demo check check-built bench docs-pictures eval fuzz fuzzers headers lists lint signatures generated install clean setup tests programs
+.PHONY: FORCE all help soak demo check check-built bench docs-pictures eval fuzz fuzzers headers lists lint signatures generated install clean setup tests programs
 .SECONDARY:
 .DELETE_ON_ERROR:
 
@@ -240,6 +242,10 @@ check-built: ## the same without the setup
 	+@$(MAKE) --no-print-directory -j$(JOBS) programs tests
 	+@$(MAKE) --no-print-directory -j$(JOBS) headers
 	@BUILD=$(BUILD) DATA=$(DATA) scripts/run-tests $(BUILD) $(addprefix test_,$(TESTS)) $(TEST_SCRIPTS)
+
+soak: setup ## plays at speed with every fault, judged: SHOTS on each table
+	+@$(MAKE) --no-print-directory -j$(JOBS) programs
+	@scripts/soak $(BUILD) $(SHOTS)
 
 bench: setup ## speed against error: a table, build/bench.json and plots in build
 	+@$(MAKE) --no-print-directory -j$(JOBS) programs $(BENCH_BINS)

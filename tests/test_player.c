@@ -257,6 +257,76 @@ START_TEST(bad_shots_are_refused_and_change_nothing)
 }
 END_TEST
 
+/* Balls come back one after the other by hand, the cue ball last; nobody can play before. */
+START_TEST(a_hand_brings_what_comes_back)
+{
+	struct ball ball[3], seen[BALL_MAX];
+	struct config_virtual slow = exact;
+	double angle, end;
+	vec2 where;
+	slow.habit.place_time = 2;
+	int n = straight_pot(ball, COLOUR_BLUE, &angle);
+	struct virtual_table *vt = begin(&slow, false, ball, n);
+	ck_assert(!player_place(vt, 0, &where));
+	ck_assert_int_eq(player_play(vt, &(struct shot){.angle = angle, .speed = 0.8}, 0, err, sizeof(err)), 0);
+	run_to_end(vt, 0);
+	end = vt->result.duration + 1e-6;
+	player_balls(vt, end, seen);
+	ck_assert(seen[1].phase == BALL_POTTED);
+	ck_assert(player_place(vt, end + 1.9, &where));
+	ck_assert_double_le(vec2_dist(where, table.spot[COLOUR_BLUE]), 1e-9);
+	player_balls(vt, end + 1.9, seen);
+	ck_assert(seen[1].phase == BALL_POTTED);
+	player_place(vt, end + 2.1, &where);
+	player_balls(vt, end + 2.1, seen);
+	ck_assert(seen[1].phase == BALL_REST);
+	ck_assert_double_le(vec2_dist(seen[1].pos, table.spot[COLOUR_BLUE]), 1e-9);
+	player_place(vt, end + 4.2, &where);
+	ck_assert(!player_place(vt, end + 4.3, &where));
+	free(vt);
+}
+END_TEST
+
+START_TEST(scattered_balls_are_a_position_to_play)
+{
+	struct table tables[2] = {scene_thesis_table(), scene_snooker_table()};
+	for (int t = 0; t < 2; t++)
+		for (uint64_t seed = 0; seed < 200; seed++) {
+			struct ball ball[BALL_MAX], again[BALL_MAX];
+			int count[COLOUR_COUNT] = {0}, first, second, n = player_scatter(&tables[t], seed, ball);
+			ck_assert_int_eq(table_check_balls(&tables[t], ball, n, &first, &second, err, sizeof(err)), 0);
+			for (int i = 0; i < n; i++)
+				count[ball[i].colour]++;
+			ck_assert_int_eq(count[COLOUR_WHITE], 1);
+			ck_assert(count[COLOUR_RED] >= 1 && count[COLOUR_RED] <= 10);
+			for (int c = COLOUR_YELLOW; c <= COLOUR_BLACK; c++)
+				ck_assert_int_eq(count[c], 1);
+			ck_assert_int_eq(player_scatter(&tables[t], seed, again), n);
+			ck_assert_mem_eq(again, ball, sizeof(*ball) * (size_t)n);
+		}
+}
+END_TEST
+
+/* What the configuration says of the table that is there is not what the planner reckons with. */
+START_TEST(a_slower_cloth_stops_the_ball_earlier)
+{
+	struct ball ball[1] = {ball_at(COLOUR_WHITE, (vec2){-0.8, 0.1})};
+	struct config_virtual slow = exact;
+	slow.cloth = 2;
+	slow.bounce = 1;
+	struct virtual_table *a = begin(&exact, false, ball, 1), *b = begin(&slow, false, ball, 1);
+	ck_assert_int_eq(player_play(a, &(struct shot){.angle = 0, .speed = 0.5}, 0, err, sizeof(err)), 0);
+	ck_assert_int_eq(player_play(b, &(struct shot){.angle = 0, .speed = 0.5}, 0, err, sizeof(err)), 0);
+	run_to_end(a, 0);
+	run_to_end(b, 0);
+	double way = a->ball[0].pos.x + 0.8, slow_way = b->ball[0].pos.x + 0.8;
+	ck_assert_double_lt(slow_way, 0.75 * way);
+	ck_assert_double_gt(slow_way, 0.45 * way);
+	free(a);
+	free(b);
+}
+END_TEST
+
 Suite *test_suite(void)
 {
 	Suite *suite = suite_create("player");
@@ -271,6 +341,9 @@ Suite *test_suite(void)
 	tcase_add_test(shots, time_scale_only_changes_the_clock);
 	tcase_add_test(errors, error_has_its_sigma_and_its_seed);
 	tcase_add_test(errors, bad_shots_are_refused_and_change_nothing);
+	tcase_add_test(errors, a_hand_brings_what_comes_back);
+	tcase_add_test(errors, scattered_balls_are_a_position_to_play);
+	tcase_add_test(errors, a_slower_cloth_stops_the_ball_earlier);
 	suite_add_tcase(suite, shots);
 	suite_add_tcase(suite, errors);
 	return suite;

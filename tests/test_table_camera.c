@@ -417,6 +417,125 @@ START_TEST(odd_poses_work)
 }
 END_TEST
 
+/* ---- what moves, and what hides ---- */
+
+static const struct ball flying = {.pos = {0.1, 0.05}, .vel = {4, 0}, .phase = BALL_ROLLING, .colour = COLOUR_WHITE};
+
+/* Middle and half width along x (px) of what a ball changed in the row through its middle. */
+static void changed_row(const struct image *without, const struct image *with, int row, double out[2])
+{
+	double sum = 0, first = 0, second = 0;
+	for (int x = 0; x < WIDTH; x++) {
+		double d = fmax(0, grey(with, x, row) - grey(without, x, row));
+		sum += d, first += d * x, second += d * x * x;
+	}
+	out[0] = first / sum;
+	out[1] = sqrt(second / sum - out[0] * out[0]);
+}
+
+START_TEST(a_ball_at_rest_has_no_blur)
+{
+	struct ball ball = ball_at(COLOUR_RED, (vec2){0.2, 0.1});
+	fill_config();
+	struct table_camera *sharp = begin();
+	config.virtual_table.exposure_time = 0.008;
+	config.virtual_table.shutter_time = 0.02;
+	struct table_camera *camera = begin();
+	table_camera_render(sharp, &ball, 1, 1, &frame[0]);
+	table_camera_render(camera, &ball, 1, 1, &frame[1]);
+	ck_assert_mem_eq(frame[0].data, frame[1].data, (size_t)frame[0].stride * HEIGHT);
+	table_camera_destroy(sharp);
+	table_camera_destroy(camera);
+}
+END_TEST
+
+START_TEST(a_moving_ball_is_blurred_around_its_place)
+{
+	double sharp[2], blurred[2];
+	vec2 px, ahead;
+	fill_config();
+	for (int k = 0; k < 2; k++) {
+		config.virtual_table.exposure_time = k ? 0.008 : 0;
+		struct table_camera *camera = begin();
+		table_camera_render(camera, NULL, 0, 1, &frame[0]);
+		table_camera_render(camera, &flying, 1, 1, &frame[1]);
+		camera_project(table_camera_truth(camera), flying.pos, 0.026, &px);
+		camera_project(table_camera_truth(camera), vec2_add(flying.pos, (vec2){0.032, 0}), 0.026, &ahead);
+		changed_row(&frame[0], &frame[1], (int)px.y, k ? blurred : sharp);
+		table_camera_destroy(camera);
+	}
+	/* 32 mm of way in the exposure: uniform over it, its deviation is 1/sqrt(12) of the way */
+	double way = (ahead.x - px.x) / sqrt(12);
+	ck_assert_double_eq_tol(blurred[0], sharp[0], 0.5);
+	ck_assert_double_eq_tol(blurred[1], hypot(sharp[1], way), 0.6);
+}
+END_TEST
+
+/* The upper rows are exposed earlier: a ball there is seen where it was. */
+START_TEST(a_rolling_shutter_sees_the_upper_rows_earlier)
+{
+	double at[2][2][2];
+	fill_config();
+	config.virtual_table.exposure_time = 0.001;
+	for (int k = 0; k < 2; k++)
+		for (int side = 0; side < 2; side++) {
+			struct ball ball = flying;
+			vec2 px;
+			ball.pos.y = side ? 0.35 : -0.35; /* up in the picture, down */
+			config.virtual_table.shutter_time = k ? 0.02 : 0;
+			struct table_camera *camera = begin();
+			table_camera_render(camera, NULL, 0, 1, &frame[0]);
+			table_camera_render(camera, &ball, 1, 1, &frame[1]);
+			camera_project(table_camera_truth(camera), ball.pos, 0.026, &px);
+			changed_row(&frame[0], &frame[1], (int)px.y, at[k][side]);
+			table_camera_destroy(camera);
+		}
+	ck_assert_double_lt(at[1][1][0], at[0][1][0] - 5);
+	ck_assert_double_gt(at[1][0][0], at[0][0][0] + 5);
+}
+END_TEST
+
+START_TEST(an_arm_hides_what_lies_below_it_and_nothing_far)
+{
+	struct ball ball = ball_at(COLOUR_WHITE, (vec2){0.3, 0.1});
+	struct table_disturbance d = {.arm = {true, true, {0.25, 0.1}, {0.05, 0.1}, {-0.7, 0.1}}, .gain = 1};
+	fill_config();
+	struct table_camera *camera = begin();
+	vec2 far, sleeve;
+	table_camera_render(camera, &ball, 1, 1, &frame[0]);
+	table_camera_disturb(camera, &d);
+	table_camera_render(camera, &ball, 1, 1, &frame[1]);
+	camera_project(table_camera_truth(camera), (vec2){0.6, -0.3}, 0, &far);
+	camera_project(table_camera_truth(camera), (vec2){-0.3, 0.1}, 0.12, &sleeve);
+	ck_assert_int_eq(grey(&frame[1], (int)far.x, (int)far.y), grey(&frame[0], (int)far.x, (int)far.y));
+	ck_assert_int_lt(grey(&frame[1], (int)sleeve.x, (int)sleeve.y), 200);
+	table_camera_disturb(camera, NULL);
+	table_camera_render(camera, &ball, 1, 1, &frame[1]);
+	ck_assert_mem_eq(frame[0].data, frame[1].data, (size_t)frame[0].stride * HEIGHT);
+	table_camera_destroy(camera);
+}
+END_TEST
+
+START_TEST(gain_and_a_turned_camera)
+{
+	fill_config();
+	struct table_camera *camera = begin();
+	table_camera_render(camera, NULL, 0, 1, &frame[0]);
+	table_camera_disturb(camera, &(struct table_disturbance){.gain = 0.125});
+	table_camera_render(camera, NULL, 0, 1, &frame[1]);
+	ck_assert_int_lt(grey(&frame[1], 480, 270), grey(&frame[0], 480, 270) / 2);
+	for (int k = 0; k < 4; k++) {
+		int dx = k & 1 ? 5 : -5, dy = k & 2 ? 3 : -3;
+		table_camera_disturb(camera, &(struct table_disturbance){.gain = 1, .shift_x = dx, .shift_y = dy});
+		table_camera_render(camera, NULL, 0, 1, &frame[1]);
+		for (int y = 20; y < HEIGHT - 20; y += 7)
+			ck_assert_mem_eq(frame[1].data + y * frame[1].stride + 3 * 20,
+					 frame[0].data + (y - dy) * frame[0].stride + 3 * (20 - dx), 3 * (WIDTH - 40));
+	}
+	table_camera_destroy(camera);
+}
+END_TEST
+
 Suite *test_suite(void)
 {
 	Suite *suite = suite_create("table_camera");
@@ -437,6 +556,11 @@ Suite *test_suite(void)
 	tcase_add_test(sensor, same_seed_same_pixels);
 	tcase_add_test(sensor, noise_has_its_sigma);
 	tcase_add_test(sensor, bad_configurations_are_refused);
+	tcase_add_test(sensor, a_ball_at_rest_has_no_blur);
+	tcase_add_test(sensor, a_moving_ball_is_blurred_around_its_place);
+	tcase_add_test(sensor, a_rolling_shutter_sees_the_upper_rows_earlier);
+	tcase_add_test(sensor, an_arm_hides_what_lies_below_it_and_nothing_far);
+	tcase_add_test(sensor, gain_and_a_turned_camera);
 	suite_add_tcase(suite, geometry);
 	suite_add_tcase(suite, light);
 	suite_add_tcase(suite, sensor);

@@ -10,8 +10,9 @@
 #include "app/process/text.h"
 
 /* What can be said to the services, and what goes with it. */
-enum argument { ARGUMENT_NONE, ARGUMENT_SECONDS, ARGUMENT_ID, ARGUMENT_FILE };
-static const char *const wanted[] = {"no argument", "seconds", "the id of a request", "a file"};
+enum argument { ARGUMENT_NONE, ARGUMENT_SECONDS, ARGUMENT_ID, ARGUMENT_FILE, ARGUMENT_FAULT };
+static const char *const wanted[] = {"no argument", "seconds", "the id of a request", "a file",
+				     "a fault and its seconds in one word"};
 
 /* clang-format off: a table is read by its columns. */
 #define CONTROLS(ROW)                                                                                                  \
@@ -22,7 +23,7 @@ static const char *const wanted[] = {"no argument", "seconds", "the id of a requ
 			ROW("info", ARGUMENT_NONE) ROW("animation", ARGUMENT_NONE)                                     \
 				ROW("animation-stop", ARGUMENT_NONE) ROW("animation-restart", ARGUMENT_NONE)           \
 					ROW("animation-seek", ARGUMENT_SECONDS) ROW("snapshot", ARGUMENT_FILE)         \
-						ROW("cancel", ARGUMENT_ID)
+						ROW("cancel", ARGUMENT_ID) ROW("fault", ARGUMENT_FAULT)
 /* clang-format on */
 
 #define AS_CONTROL(name, argument) {name, argument},
@@ -59,7 +60,7 @@ const struct options control_options = {
 	.operand_names = control_names,
 	.row = rows,
 	.notes = "pause, resume, infinity, next, previous, halo, paths, table, info, animation, animation-stop,\n"
-		 "animation-seek SECONDS, animation-restart, snapshot FILE.png, cancel ID",
+		 "animation-seek SECONDS, animation-restart, snapshot FILE.png, cancel ID, fault \"NAME SECONDS\"",
 };
 
 static bool is_id(const char *text)
@@ -79,6 +80,7 @@ static bool argument_fits(enum argument kind, const char *text)
 	case ARGUMENT_ID:
 		return text && is_id(text);
 	case ARGUMENT_FILE:
+	case ARGUMENT_FAULT:
 		return text && *text;
 	}
 	return false;

@@ -9,6 +9,7 @@ struct judge_options {
 	const char *out;	  /* folder for replays of wrong rests, NULL none */
 	double keep;		  /* s of each that are kept */
 	double seconds;		  /* s that --live listens, 0 until it is stopped */
+	double shots;		  /* that --live waits for, 0 any number */
 	bool json, live, replay;
 };
 

@@ -30,6 +30,7 @@ struct run {
 	struct kept *kept;   /* owned, kept_count from kept_first on */
 	size_t kept_first, kept_count, kept_capacity;
 	int64_t last; /* us, of the newest event */
+	sd_event *event; /* borrowed, of --live; NULL: a log */
 	int replays;
 	bool has_truth;
 };
@@ -358,6 +359,9 @@ static bool on_message(void *context, const void *message)
 	if (tap->channel->feed)
 		tap->channel->feed(r, r->last, message);
 	tell_finding(r);
+	/* The rest after the last shot is waited for. */
+	if (r->options->shots > 0 && (double)r->judge->report.shots > r->options->shots)
+		sd_event_exit(r->event, CMD_OK);
 	return true;
 }
 
@@ -420,6 +424,7 @@ int cmd_judge_live(const struct config *config, const struct judge_options *opti
 		tap[i] = (struct tap){&r, &channels[i]};
 	int code = begin(&r, config, options, "live");
 	code = code < 0 ? code : sd_event_new(&event);
+	r.event = event;
 	code = code < 0 ? code : bus_open(&bus, options->bus ? options->bus : bus_url(config->bus), err, sizeof err);
 	code = code < 0 ? code : listen_to(event, bus, tap, options);
 	if (code >= 0) {

@@ -40,6 +40,9 @@ struct config_projector {
 	char font[64];
 };
 
+/* Sensor faults of the virtual table, in the order of enum sensor_fault. */
+enum { VIRTUAL_FAULT_COUNT = 11 };
+
 /* Virtual table: light, noise, player. */
 struct config_virtual {
 	double noise;		/* 1 sigma of the sensor, grey levels */
@@ -55,6 +58,21 @@ struct config_virtual {
 	double camera_x, camera_y;	     /* m, point below the camera, table frame */
 	double camera_tilt_x, camera_tilt_y; /* rad */
 	int jpeg_quality;		     /* 1..100 */
+	double exposure_time;		     /* s: what moves is blurred by its way in that time */
+	double shutter_time;		     /* s from the first row's exposure to the last one's; 0: all at once */
+	struct {
+		double aim_time;   /* s with arm and cue over the table before the strike; 0: nobody is seen */
+		double leave_time; /* s until they have gone after it */
+		double place_time; /* s a hand takes to put down a ball that comes back; 0: it is just there */
+		double patience;   /* s without a proposal until the player plays a shot of his own; 0: never */
+		/* Shares: of shots that are others than proposed, of shots with a second one right after, of rests in which a ball is
+		 * touched, the cloth wiped, an arm left lying. */
+		double other, quick, touch, wipe, linger;
+	} habit;
+	double fault[VIRTUAL_FAULT_COUNT][2]; /* sensor_faults.h: times a minute, s of each */
+	/* The table of the player where it is another than the planner believes: shares of rolling friction and of what the cushions give back,
+	 * and a slope on top of the table's own (rise per way). */
+	double cloth, bounce, tilt[2];
 };
 
 struct config_service {

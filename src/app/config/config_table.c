@@ -244,6 +244,8 @@ static const struct config_key projector_keys[] = {
 	END,
 };
 
+/* Times a minute and seconds of each. */
+#define FAULT(key, kind) NUMBERS_OR(0, key, 2, UNIT_NONE, 0, 600, AT(config.virtual_table.fault[kind]))
 static const struct config_key virtual_keys[] = {
 	NUMBER("noise", UNIT_GREY, 0, 64, AT(config.virtual_table.noise)),
 	NUMBER("exposure", UNIT_NONE, 0.01, 10, AT(config.virtual_table.exposure)),
@@ -260,6 +262,31 @@ static const struct config_key virtual_keys[] = {
 	NUMBER("camera_tilt_x", UNIT_DEGREE, -45, 45, AT(config.virtual_table.camera_tilt_x)),
 	NUMBER("camera_tilt_y", UNIT_DEGREE, -45, 45, AT(config.virtual_table.camera_tilt_y)),
 	WHOLE("jpeg_quality", UNIT_NONE, 1, 100, AT(config.virtual_table.jpeg_quality)),
+	NUMBER_OR(8, "exposure_time", UNIT_MS, 0, 100, AT(config.virtual_table.exposure_time)),
+	NUMBER_OR(0, "shutter_time", UNIT_MS, 0, 100, AT(config.virtual_table.shutter_time)),
+	NUMBER_OR(0, "aim_time", UNIT_MS, 0, 600000, AT(config.virtual_table.habit.aim_time)),
+	NUMBER_OR(500, "leave_time", UNIT_MS, 0, 600000, AT(config.virtual_table.habit.leave_time)),
+	NUMBER_OR(0, "place_time", UNIT_MS, 0, 600000, AT(config.virtual_table.habit.place_time)),
+	NUMBER_OR(60000, "patience", UNIT_MS, 0, 3600000, AT(config.virtual_table.habit.patience)),
+	NUMBER_OR(0, "other_shot", UNIT_NONE, 0, 1, AT(config.virtual_table.habit.other)),
+	NUMBER_OR(0, "quick_shot", UNIT_NONE, 0, 1, AT(config.virtual_table.habit.quick)),
+	NUMBER_OR(0, "touch", UNIT_NONE, 0, 1, AT(config.virtual_table.habit.touch)),
+	NUMBER_OR(0, "wipe", UNIT_NONE, 0, 1, AT(config.virtual_table.habit.wipe)),
+	NUMBER_OR(0, "linger", UNIT_NONE, 0, 1, AT(config.virtual_table.habit.linger)),
+	FAULT("fault_drop", 0),
+	FAULT("fault_late", 1),
+	FAULT("fault_repeat", 2),
+	FAULT("fault_freeze", 3),
+	FAULT("fault_dark", 4),
+	FAULT("fault_bright", 5),
+	FAULT("fault_flash", 6),
+	FAULT("fault_ghost", 7),
+	FAULT("fault_missing", 8),
+	FAULT("fault_knock", 9),
+	FAULT("fault_bits", 10),
+	NUMBER_OR(1, "cloth", UNIT_NONE, 0.2, 5, AT(config.virtual_table.cloth)),
+	NUMBER_OR(1, "bounce", UNIT_NONE, 0.2, 1.2, AT(config.virtual_table.bounce)),
+	NUMBERS_OR(0, "tilt", 2, UNIT_MM_M, -20, 20, AT(config.virtual_table.tilt)),
 	END,
 };
 

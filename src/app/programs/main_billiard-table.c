@@ -10,9 +10,13 @@
 #include "app/light/animation.h"
 #include "app/light/draw.h"
 #include "app/planner/plan_message.h"
+#include "app/virtual/drawn_shot.h"
+#include "app/virtual/habits.h"
 #include "app/virtual/player.h"
+#include "app/virtual/sensor_faults.h"
 #include "app/config/position.h"
 #include "app/process/process.h"
+#include "app/process/text.h"
 #include "app/light/render.h"
 #include "app/virtual/table_camera.h"
 #include "vision/image_io_cv.h"
@@ -29,9 +33,13 @@ struct virtual_process {
 	billiard_draw_list_t list;
 	struct animation animation;
 	bool lit; /* the camera has the light of list; false: draw it anew */
-	billiard_plan_t plan;
-	int64_t wanted_id; /* proposal on the table that was not played yet, 0 none */
-	double wanted_at;  /* s, when it was first seen there */
+	struct drawn_shot *drawn; /* owned: the answers of the planner */
+	struct habits habits;
+	bool placing;	 /* a hand puts down a ball */
+	vec2 placing_at; /* m */
+	struct sensor_faults faults;
+	struct byte_buffer late; /* the newest frame that is held back */
+	int64_t late_utime;	 /* us, 0 none */
 	int64_t frames;
 	int points;
 	double work; /* s, of the last frame */
@@ -50,20 +58,125 @@ static void publish_truth(struct virtual_process *p, int64_t utime, double now, 
 	bus_publish(p->process.bus, "TRUTH", &bus_table_state, &truth);
 }
 
+/* ---- the sensor ----------------------------------------------------------------------------------------------------- */
+
+static bool holds(const struct virtual_process *p, enum sensor_fault fault, double now)
+{
+	return sensor_faults_hold(&p->faults, fault, now);
+}
+
+static void send_jpeg(struct virtual_process *p, const struct byte_buffer *jpeg, int64_t utime)
+{
+	const struct image *image = &p->frame.image;
+	billiard_image_t message = {utime, p->frames, image->width, image->height, (int32_t)jpeg->size, jpeg->data};
+	if (jpeg->size > 0)
+		bus_publish(p->process.bus, "CAMERA", &bus_image, &message);
+}
+
+static void flip_bits(struct virtual_process *p)
+{
+	uint64_t r = sensor_faults_random(&p->faults, FAULT_BITS) ^ (uint64_t)p->frames * 0x9e3779b97f4a7c15u;
+	for (int i = 0; i < 4 && p->jpeg.size > 4; i++, r = r * 6364136223846793005u + 1442695040888963407u)
+		p->jpeg.data[2 + (r >> 16) % (p->jpeg.size - 4)] ^= (uint8_t)(1u << (r >> 61));
+}
+
+/* The balls that the camera sees: one more, or one less. */
+static int seen_balls(const struct virtual_process *p, double now, struct ball out[BALL_MAX + 1])
+{
+	int n = p->table->count;
+	player_balls(p->table, now, out);
+	if (holds(p, FAULT_MISSING, now))
+		out[sensor_faults_random(&p->faults, FAULT_MISSING) % (uint64_t)n].phase = BALL_POTTED;
+	if (!holds(p, FAULT_GHOST, now))
+		return n;
+	uint64_t r = sensor_faults_random(&p->faults, FAULT_GHOST);
+	const struct table *t = &p->config.table;
+	vec2 at = {((double)(r >> 40) * 0x1p-24 - 0.5) * 0.9 * t->length, ((double)(r >> 16 & 0xffffff) * 0x1p-24 - 0.5) * 0.9 * t->width};
+	struct ball ghost = ball_at((enum ball_colour)(1 + r % 7), at);
+	for (int i = 0; i < n; i++)
+		if (out[i].phase == BALL_POTTED) {
+			out[i] = ghost;
+			return n;
+		}
+	if (n < BALL_MAX)
+		out[n++] = ghost;
+	return n;
+}
+
+static struct habits_view view_of(const struct virtual_process *p)
+{
+	return (struct habits_view){.ball = p->table->ball,
+				    .count = p->table->count,
+				    .at_rest = !p->table->running && !p->placing,
+				    .placing = p->placing ? &p->placing_at : NULL};
+}
+
+static void disturb(struct virtual_process *p, double now)
+{
+	struct habits_view view = view_of(p);
+	struct table_disturbance d = {.arm = habits_arm(&p->habits, &view, now), .gain = 1};
+	if (holds(p, FAULT_DARK, now))
+		d.gain = 0.125;
+	if (holds(p, FAULT_BRIGHT, now))
+		d.gain = 3;
+	if (holds(p, FAULT_FLASH, now))
+		d.gain = 32;
+	if (holds(p, FAULT_KNOCK, now)) {
+		uint64_t r = sensor_faults_random(&p->faults, FAULT_KNOCK);
+		d.shift_x = (int)(r % 17) - 8;
+		d.shift_y = (int)(r / 17 % 17) - 8;
+	}
+	table_camera_disturb(p->camera, &d);
+}
+
+/* False when there is no picture. */
+static bool take_picture(struct virtual_process *p, double now)
+{
+	struct ball ball[BALL_MAX + 1];
+	char err[PROCESS_ERROR_SIZE];
+	int count = seen_balls(p, now, ball);
+	disturb(p, now);
+	table_camera_render(p->camera, ball, count, (uint64_t)p->frames, &p->frame.image);
+	if (image_encode_jpeg(&p->frame.image, p->config.virtual_table.jpeg_quality, &p->jpeg, err, sizeof err) == 0)
+		return true;
+	process_error(&p->process, "CAMERA: %s", err);
+	return false;
+}
+
+/* What comes too late keeps its time. */
+static void hold_back(struct virtual_process *p, int64_t utime)
+{
+	struct byte_buffer jpeg = p->late;
+	p->late = p->jpeg;
+	p->jpeg = jpeg;
+	p->late_utime = utime;
+}
+
 static void publish_frame(struct virtual_process *p, int64_t utime, double now)
 {
-	struct ball ball[BALL_MAX];
-	char err[PROCESS_ERROR_SIZE];
-	struct image *image = &p->frame.image;
-	player_balls(p->table, now, ball);
-	table_camera_render(p->camera, ball, p->table->count, (uint64_t)p->frames, image);
-	if (image_encode_jpeg(image, p->config.virtual_table.jpeg_quality, &p->jpeg, err, sizeof err) < 0) {
-		process_error(&p->process, "CAMERA: %s", err);
+	sensor_faults_frame(&p->faults, (uint64_t)p->frames, now);
+	bool late = holds(p, FAULT_LATE, now);
+	if (p->late_utime && !late) {
+		send_jpeg(p, &p->late, p->late_utime);
+		p->late_utime = 0;
+	}
+	if (holds(p, FAULT_DROP, now))
+		return;
+	bool frozen = holds(p, FAULT_FREEZE, now) && p->jpeg.size > 0;
+	if (!frozen && !take_picture(p, now))
+		return;
+	if (holds(p, FAULT_BITS, now) && !frozen)
+		flip_bits(p);
+	if (late) {
+		hold_back(p, utime);
 		return;
 	}
-	billiard_image_t message = {utime, p->frames, image->width, image->height, (int32_t)p->jpeg.size, p->jpeg.data};
-	bus_publish(p->process.bus, "CAMERA", &bus_image, &message);
+	send_jpeg(p, &p->jpeg, utime);
+	if (holds(p, FAULT_REPEAT, now))
+		send_jpeg(p, &p->jpeg, utime);
 }
+
+/* ---- the player ----------------------------------------------------------------------------------------------------- */
 
 static void name_balls(struct virtual_process *p, const struct position *position)
 {
@@ -100,17 +213,19 @@ static void end_shot(struct virtual_process *p, int64_t utime, double now)
 	publish_truth(p, utime, now, false);
 }
 
-/* The player has looked at the proposal long enough. */
-static void play_wanted(struct virtual_process *p, double now)
+/* What the player sees and does. */
+static void play(struct virtual_process *p, double now)
 {
 	char err[PROCESS_ERROR_SIZE];
-	if (!p->wanted_id || p->table->running || p->plan.request_id != p->wanted_id ||
-	    p->plan.status != PLAN_MESSAGE_OK || now - p->wanted_at < p->config.virtual_table.think_time)
-		return;
-	const billiard_plan_shot_t *s = &p->plan.entries[0].shots[0];
-	struct shot shot = {s->angle, s->speed, s->side, s->follow, s->elevation};
-	p->wanted_id = 0;
-	if (player_play(p->table, &shot, now, err, sizeof err) < 0)
+	p->placing = player_place(p->table, now, &p->placing_at);
+	struct habits_view view = view_of(p);
+	const billiard_animation_t *animation = animation_is_shown(&p->animation) ? &p->animation.message : NULL;
+	if (p->list.plan_id && drawn_shot_find(p->drawn, p->list.plan_id, animation, &view.shot))
+		view.proposal = p->list.plan_id;
+	struct habits_act act = habits_tick(&p->habits, &view, now);
+	if (act.touched >= 0)
+		player_touch(p->table, act.touched, act.to);
+	if (act.strike && player_play(p->table, &act.shot, now, err, sizeof err) < 0)
 		process_error(&p->process, "shot refused: %s", err);
 }
 
@@ -134,7 +249,7 @@ static int on_frame(sd_event_source *source, uint64_t usec, void *context)
 	double now = clock_seconds();
 	int64_t utime = clock_utime();
 	p->frames++;
-	play_wanted(p, now);
+	play(p, now);
 	if (p->table->running)
 		end_shot(p, utime, now);
 	else
@@ -162,10 +277,6 @@ static bool on_draw(void *context, const void *message)
 	const billiard_draw_list_t *list = message;
 	if (!draw_check(list))
 		return false;
-	if (list->plan_id != p->list.plan_id) {
-		p->wanted_id = list->plan_id;
-		p->wanted_at = clock_seconds();
-	}
 	if (same_picture(&p->list, list))
 		return true;
 	p->list = *list;
@@ -188,8 +299,21 @@ static bool on_plan(void *context, const void *message)
 	if (!plan_check(plan, &p->config.table))
 		return false;
 	if (plan->status == PLAN_MESSAGE_OK)
-		p->plan = *plan;
+		drawn_shot_plan(p->drawn, plan);
 	return true;
+}
+
+/* "fault", with its name and its seconds: one of the sensor. */
+static bool on_command(void *context, const void *message)
+{
+	struct virtual_process *p = context;
+	const billiard_command_t *command = message;
+	char name[sizeof command->name], argument[sizeof command->argument];
+	text_get(name, sizeof name, command->name, sizeof command->name);
+	text_get(argument, sizeof argument, command->argument, sizeof command->argument);
+	if (!bus_is_for(command, "billiard-table") || strcmp(name, "fault") != 0)
+		return true;
+	return sensor_faults_command(&p->faults, argument, clock_seconds());
 }
 
 static void describe(void *context, struct process *process)
@@ -204,31 +328,44 @@ static void describe(void *context, struct process *process)
 
 /* ---- set-up --------------------------------------------------------------------------------------------------------- */
 
+static const char RANDOM[] = "random:";
+
+/* The opening position, or a random one of the middle of a frame. */
+static int own_position(const struct config *c, const char *text, struct position *out, char *err, size_t err_size)
+{
+	char reason[160], *rest;
+	unsigned long long seed = text ? strtoull(text + strlen(RANDOM), &rest, 10) : 0;
+	if (text && (rest == text + strlen(RANDOM) || *rest)) {
+		snprintf(err, err_size, "--position: found \"%.60s\", allowed a file or random:SEED", text);
+		return -EINVAL;
+	}
+	if (!text)
+		player_rack(&c->table, out->ball);
+	out->count = text ? player_scatter(&c->table, seed, out->ball) : BALL_MAX;
+	if (table_check_balls(&c->table, out->ball, out->count, &(int){0}, &(int){0}, reason, sizeof reason) == 0)
+		return 0;
+	snprintf(err, err_size, "%.100s: table.spots: no opening position: %.100s", c->path, reason);
+	return -EINVAL;
+}
+
 static int set_balls(struct virtual_process *p, const char *path, char *err, size_t err_size)
 {
 	struct position position = {0};
 	const struct config *c = &p->config;
-	if (path) {
-		int r = position_read(&position, &c->table, path, err, err_size);
-		if (r < 0)
-			return r;
-		if (position_cue(&position) < 0) {
-			snprintf(err, err_size, "%s: no cue ball", path);
-			return -EINVAL;
-		}
-	} else {
-		char reason[160];
-		player_rack(&c->table, position.ball);
-		position.count = BALL_MAX;
-		if (table_check_balls(&c->table, position.ball, BALL_MAX, &(int){0}, &(int){0}, reason, sizeof reason) <
-		    0) {
-			snprintf(err, err_size, "%.100s: table.spots: no opening position: %.100s", c->path, reason);
-			return -EINVAL;
-		}
+	bool own = !path || strncmp(path, RANDOM, strlen(RANDOM)) == 0;
+	int r = own ? own_position(c, path, &position, err, err_size)
+		    : position_read(&position, &c->table, path, err, err_size);
+	if (r < 0)
+		return r;
+	if (!own && position_cue(&position) < 0) {
+		snprintf(err, err_size, "%s: no cue ball", path);
+		return -EINVAL;
 	}
 	player_init(p->table, &c->table, &c->model, &c->virtual_table, c->infinity.rules, position.ball,
 		    position.count);
-	name_balls(p, path ? &position : NULL);
+	habits_init(&p->habits, &c->table, &c->virtual_table);
+	sensor_faults_init(&p->faults, &c->virtual_table, clock_seconds());
+	name_balls(p, own ? NULL : &position);
 	return 0;
 }
 
@@ -236,7 +373,8 @@ static int create_parts(struct virtual_process *p, const struct process_options 
 {
 	int r = -ENOMEM;
 	p->table = calloc(1, sizeof *p->table);
-	if (!p->table || image_buffer_reserve(&p->frame, p->config.camera.width, p->config.camera.height) < 0) {
+	p->drawn = calloc(1, sizeof *p->drawn);
+	if (!p->table || !p->drawn || image_buffer_reserve(&p->frame, p->config.camera.width, p->config.camera.height) < 0) {
 		snprintf(err, err_size, "out of memory");
 		return r;
 	}
@@ -260,6 +398,8 @@ static int setup(struct virtual_process *p, const struct process_options *option
 									  on_animation, p})) < 0 ||
 	    (r = bus_subscribe(p->process.bus, &(struct bus_subscription){"PLAN", &bus_plan, BUS_EACH, on_plan, p})) <
 		    0 ||
+	    (r = bus_subscribe(p->process.bus,
+			       &(struct bus_subscription){"COMMAND", &bus_command, BUS_EACH, on_command, p})) < 0 ||
 	    (r = process_every(&p->process, period, on_frame, p)) < 0) {
 		fprintf(stderr, "billiard-table: %s\n", err[0] ? err : strerror(-r));
 		return r;
@@ -281,7 +421,9 @@ int main(int argc, char **argv)
 	render_destroy(p.render);
 	image_buffer_finish(&p.frame);
 	byte_buffer_finish(&p.jpeg);
+	byte_buffer_finish(&p.late);
 	process_finish(&p.process);
 	free(p.table);
+	free(p.drawn);
 	return status;
 }

@@ -29,6 +29,52 @@ void player_rack(const struct table *table, struct ball ball[BALL_MAX])
 	assert(n == BALL_MAX);
 }
 
+static uint64_t mix(uint64_t z)
+{
+	z += 0x9e3779b97f4a7c15u;
+	z = (z ^ (z >> 30)) * 0xbf58476d1ce4e5b9u;
+	z = (z ^ (z >> 27)) * 0x94d049bb133111ebu;
+	return z ^ (z >> 31);
+}
+
+static double uniform(uint64_t *state)
+{
+	*state = mix(*state);
+	return (double)(*state >> 11) * 0x1p-53;
+}
+
+/* Adds a ball at a random place where it fits; leaves it out when none is found. */
+static int scatter_one(const struct table *table, struct ball *ball, int count, enum ball_colour colour, uint64_t *state)
+{
+	char reason[160];
+	for (int tries = 0; tries < 200; tries++) {
+		double x = (uniform(state) - 0.5) * (table->length - 2 * table->ball_radius),
+		       y = (uniform(state) - 0.5) * (table->width - 2 * table->ball_radius);
+		ball[count] = ball_at(colour, (vec2){x, y});
+		if (table_check_balls(table, ball, count + 1, &(int){0}, &(int){0}, reason, sizeof reason) == 0)
+			return count + 1;
+	}
+	return count;
+}
+
+int player_scatter(const struct table *table, uint64_t seed, struct ball ball[BALL_MAX])
+{
+	uint64_t state = mix(seed);
+	int n = 0, reds = 1 + (int)(10 * uniform(&state));
+	for (int colour = COLOUR_YELLOW; colour <= COLOUR_BLACK; colour++)
+		ball[n++] = ball_at((enum ball_colour)colour, table->spot[colour]);
+	for (int i = 0; i < 6; i++)
+		if (uniform(&state) < 0.3) { /* it lies where the last shot left it */
+			struct ball first = ball[i];
+			for (int k = i; k + 1 < n; k++)
+				ball[k] = ball[k + 1];
+			n = scatter_one(table, ball, n - 1, first.colour, &state);
+		}
+	for (int i = 0; i < reds; i++)
+		n = scatter_one(table, ball, n, COLOUR_RED, &state);
+	return scatter_one(table, ball, n, COLOUR_WHITE, &state);
+}
+
 static int cue_ball(const struct virtual_table *vt)
 {
 	for (int i = 0; i < vt->count; i++)
@@ -77,14 +123,6 @@ static bool place_for_cue(const struct virtual_table *vt, vec2 *out)
 
 /* ---- the player's hand ---- */
 
-static uint64_t mix(uint64_t z)
-{
-	z += 0x9e3779b97f4a7c15u;
-	z = (z ^ (z >> 30)) * 0xbf58476d1ce4e5b9u;
-	z = (z ^ (z >> 27)) * 0x94d049bb133111ebu;
-	return z ^ (z >> 31);
-}
-
 /* Two Gaussian samples with sigma 1 that belong to this shot (Box and Muller). */
 static void gauss(uint64_t seed, int64_t shot, double out[2])
 {
@@ -113,16 +151,38 @@ static bool shot_ok(const struct shot *shot)
 
 /* ---- shots ---- */
 
+/* The table that is really there. */
+static void wear(struct table *table, const struct config_virtual *def)
+{
+	struct material *m = &table->material;
+	char reason[160];
+	m->mu_roll *= def->cloth;
+	m->e_cushion = fmin(1, m->e_cushion * def->bounce);
+	m->loss_cushion = fmin(0.95, fmax(0, 1 - (1 - m->loss_cushion) * def->bounce));
+	if (def->tilt[0] == 0 && def->tilt[1] == 0)
+		return;
+	struct table level = *table;
+	table->bed.slope = vec2_add(table->bed.slope, (vec2){def->tilt[0], def->tilt[1]});
+	if (table_finish(table, reason, sizeof reason) < 0)
+		*table = level; /* so steep that no ball would rest */
+}
+
 void player_init(struct virtual_table *vt, const struct table *table, const struct model *model,
 		 const struct config_virtual *def, bool rules, const struct ball *ball, int count)
 {
 	assert(table_check_balls(table, ball, count, &(int){0}, &(int){0}, (char[200]){0}, 200) == 0);
 	memset(vt, 0, sizeof(*vt));
 	vt->table = table;
+	if (def->cloth > 0 && def->bounce > 0) {
+		vt->own = *table;
+		wear(&vt->own, def);
+		vt->table = &vt->own;
+	}
 	vt->model = *model;
 	vt->error_angle = def->error_angle;
 	vt->error_speed = def->error_speed;
 	vt->time_scale = def->time_scale;
+	vt->place_time = def->habit.place_time;
 	vt->seed = def->seed;
 	vt->count = count;
 	for (int i = 0; i < count; i++)
@@ -185,6 +245,52 @@ static void put_cue_in_hand(struct virtual_table *vt)
 	}
 }
 
+static bool has_fallen(const struct virtual_table *vt, int ball)
+{
+	for (int i = 0; i < vt->result.potted_count; i++)
+		if (vt->result.potted[i].ball == ball)
+			return true;
+	return false;
+}
+
+/* Takes the balls that came back off again: a hand brings them, colours first, the cue ball last. */
+static void take_in_hand(struct virtual_table *vt, double now)
+{
+	vt->placing_count = 0;
+	vt->place_since = now;
+	for (int cue = 0; cue < 2; cue++)
+		for (int i = 0; i < vt->count; i++) {
+			bool back = has_fallen(vt, i) && vt->ball[i].phase != BALL_POTTED;
+			if (!back || (vt->ball[i].colour == COLOUR_WHITE) != cue)
+				continue;
+			vt->placed[vt->placing_count] = vt->ball[i];
+			vt->placing[vt->placing_count++] = i;
+			vt->ball[i].phase = BALL_POTTED;
+		}
+}
+
+bool player_place(struct virtual_table *vt, double now, vec2 *where)
+{
+	if (vt->placing_count > 0 && now - vt->place_since >= vt->place_time) {
+		vt->ball[vt->placing[0]] = vt->placed[0];
+		vt->place_since = now;
+		vt->placing_count--;
+		for (int i = 0; i < vt->placing_count; i++) {
+			vt->placing[i] = vt->placing[i + 1];
+			vt->placed[i] = vt->placed[i + 1];
+		}
+	}
+	if (vt->placing_count > 0)
+		*where = vt->placed[0].pos;
+	return vt->placing_count > 0;
+}
+
+void player_touch(struct virtual_table *vt, int ball, vec2 to)
+{
+	assert(!vt->running && ball >= 0 && ball < vt->count);
+	vt->ball[ball].pos = to;
+}
+
 bool player_tick(struct virtual_table *vt, double now)
 {
 	if (!vt->running || shot_time(vt, now) < vt->result.duration)
@@ -199,6 +305,8 @@ bool player_tick(struct virtual_table *vt, double now)
 	vt->result.respot_failed = outcome.respot_failed;
 	vt->state = outcome.next;
 	put_cue_in_hand(vt);
+	if (vt->place_time > 0)
+		take_in_hand(vt, now);
 	vt->running = false;
 	return true;
 }

@@ -26,6 +26,7 @@ struct player_result {
 /* About 1 MB: not for the stack. */
 struct virtual_table {
 	const struct table *table; /* borrowed */
+	struct table own;	   /* another table than the planner believes in, when the configuration says so */
 	struct model model;
 	double error_angle, error_speed; /* 1 sigma: rad, share */
 	double time_scale;		 /* table's time to real time */
@@ -37,6 +38,11 @@ struct virtual_table {
 	bool running;
 	double started;		     /* s, caller's clock */
 	struct player_result result; /* of the running or last shot; points and foul only at its end */
+	double place_time; /* s for a ball that a hand puts down, 0: it is there at once */
+	struct ball placed[BALL_MAX]; /* as they will be put down, in this order */
+	int placing[BALL_MAX];	      /* which balls those are */
+	int placing_count;
+	double place_since; /* s, when the hand took the first of them */
 	struct sim sim;
 	struct trace trace;
 	struct trace_entry entry[PLAYER_EVENTS_MAX];
@@ -61,6 +67,16 @@ bool player_tick(struct virtual_table *vt, double now);
 
 /* Where the balls are at that time: vt->count of them. */
 void player_balls(const struct virtual_table *vt, double now, struct ball out[BALL_MAX]);
+
+/* Puts down the balls that come back, one after the other, place_time each. True while there is one; *where: its place. */
+bool player_place(struct virtual_table *vt, double now, vec2 *where);
+
+/* A hand moves a ball that rests to a place that is free. */
+void player_touch(struct virtual_table *vt, int ball, vec2 to);
+
+/* A position as in the middle of a frame: white, 1 to 10 reds and the colours on their spots, some of them elsewhere. Returns the number of
+ * balls. */
+int player_scatter(const struct table *table, uint64_t seed, struct ball ball[BALL_MAX]);
 
 /* No object ball is left. */
 bool player_is_done(const struct virtual_table *vt);

@@ -273,13 +273,16 @@ static uint8_t to_byte(int grey)
 	return grey < 0 ? 0 : rounded > 255 ? 255 : (uint8_t)rounded;
 }
 
+enum { GAIN = 256 }; /* 1 */
+
 static void expose_row(const struct table_camera *camera, unsigned at, uint8_t *out)
 {
 	const uint32_t *column = camera->column;
 	int count = 3 * camera->camera.in.width;
+	uint32_t gain = (uint32_t)(GAIN * camera->disturbance.gain + 0.5);
 	for (int i = 0; i < count; i++) {
 		uint32_t left = column[i < 3 ? i : i - 3], right = column[i >= count - 3 ? i : i + 3];
-		uint32_t level = (left + 2 * column[i] + right) / 16;
+		uint32_t level = (left + 2 * column[i] + right) / 16 * gain / GAIN;
 		int grey = camera->grey[level < LEVEL ? level : LEVEL];
 		out[i] = to_byte(grey + camera->noise[(at + (unsigned)i) % NOISE_COUNT]);
 	}
@@ -297,6 +300,26 @@ static void expose(const struct table_camera *camera, uint64_t frame, struct ima
 	}
 }
 
+/* A camera that was turned a little shows nearly the same picture elsewhere. Its edge is repeated. */
+static void shift(const struct table_camera *camera, struct image *out)
+{
+	int dx = camera->disturbance.shift_x, dy = camera->disturbance.shift_y, width = out->width, height = out->height;
+	for (int k = 0; (dx || dy) && k < height; k++) {
+		int y = dy > 0 ? height - 1 - k : k, from = y - dy < 0 ? 0 : y - dy >= height ? height - 1 : y - dy;
+		uint8_t *row = out->data + y * out->stride;
+		const uint8_t *source = out->data + from * out->stride;
+		int n = width - abs(dx);
+		memmove(row + (dx > 0 ? 3 * dx : 0), source + (dx < 0 ? -3 * dx : 0), 3 * (size_t)n);
+	}
+}
+
+void table_camera_disturb(struct table_camera *camera, const struct table_disturbance *disturbance)
+{
+	camera->disturbance = disturbance ? *disturbance : (struct table_disturbance){.gain = 1};
+	assert(camera->disturbance.gain >= 0 && camera->disturbance.gain <= 32);
+	assert(abs(camera->disturbance.shift_x) <= 64 && abs(camera->disturbance.shift_y) <= 64);
+}
+
 void table_camera_render(struct table_camera *camera, const struct ball *ball, int count, uint64_t frame,
 			 struct image *out)
 {
@@ -305,7 +328,9 @@ void table_camera_render(struct table_camera *camera, const struct ball *ball, i
 	assert(count >= 0 && count <= BALL_MAX);
 	memcpy(camera->work, camera->lit, 3 * (size_t)width * (size_t)height * sizeof(*camera->work));
 	table_camera_draw_balls(camera, ball, count);
+	table_camera_draw_arm(camera, &camera->disturbance.arm);
 	expose(camera, frame, out);
+	shift(camera, out);
 }
 
 /* ---- life ---- */
@@ -352,6 +377,7 @@ static void set_up(struct table_camera *camera, const struct config *config)
 {
 	camera->table = config->table;
 	camera->projector = config->projector;
+	camera->disturbance.gain = 1;
 	camera->def = config->virtual_table;
 	camera->camera = (struct camera){config->camera, pose_of(&config->virtual_table, config->markers.height)};
 	camera->picture =

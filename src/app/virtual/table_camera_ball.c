@@ -6,6 +6,8 @@
 /* Balls are drawn from the farthest to the nearest; each pixel's ray is cut with the sphere itself. */
 
 enum { RIM_SAMPLES = 8 }; /* across a pixel on a ball's rim */
+enum { BLUR_MAX = 16 };	  /* places that a moving ball is drawn at, at most */
+static const double BLUR_STEP = 0.002; /* m */
 
 struct vec3 {
 	double x, y, z; /* m */
@@ -17,6 +19,7 @@ struct sphere {
 	float albedo[3]; /* red, green, blue: share of LEVEL under full light */
 	float cloth[3];	 /* light of the cloth around it, shares of LEVEL */
 	float room[3];	 /* the room's light at its place, linear */
+	vec2 vel;	 /* m/s */
 };
 
 struct box {
@@ -239,6 +242,53 @@ static void blend(struct table_camera *camera, int i, const float light[3], floa
 	}
 }
 
+/* Places that a moving ball is drawn at: one for each BLUR_STEP of its way while the shutter is open. */
+static int blur_samples(const struct table_camera *camera, const struct sphere *sphere)
+{
+	double way = vec2_norm(sphere->vel) * camera->def.exposure_time;
+	return way < BLUR_STEP / 4 ? 1 : 1 + (int)fmin(BLUR_MAX - 1, way / BLUR_STEP);
+}
+
+/* One pixel of a moving ball: the mean over the time that its row is exposed. */
+static void draw_moving_pixel(struct table_camera *camera, const struct sphere *sphere, struct vec3 eye, double rim,
+			      const int at[2])
+{
+	vec2 cloth = cloth_of(camera, at[0], at[1]);
+	int n = blur_samples(camera, sphere);
+	double row = camera->def.shutter_time * ((double)at[1] / camera->camera.in.height - 0.5);
+	float light[3] = {0, 0, 0}, one[3], sum = 0;
+	for (int k = 0; k < n; k++) {
+		double t = row + camera->def.exposure_time * ((k + 0.5) / n - 0.5);
+		struct sphere now = *sphere;
+		struct pass pass;
+		now.centre.x += t * now.vel.x;
+		now.centre.y += t * now.vel.y;
+		if (!pass_ball(&now, sub(now.centre, eye), (struct vec3){cloth.x - eye.x, cloth.y - eye.y, -eye.z}, 1 + rim, &pass))
+			continue;
+		float share = (float)fmax(0, fmin(1, 0.5 + (1 - pass.distance) / (2 * rim)));
+		shade_ball(camera, &now, pass.at, pass.normal, eye, one);
+		for (int c = 0; c < 3; c++)
+			light[c] += share * one[c];
+		sum += share;
+	}
+	if (sum <= 0)
+		return;
+	for (int c = 0; c < 3; c++)
+		light[c] /= sum;
+	blend(camera, at[1] * camera->camera.in.width + at[0], light, table_camera_gain(camera, at[0], at[1]), sum / (float)n);
+}
+
+static void draw_moving(struct table_camera *camera, const struct sphere *sphere, struct vec3 eye)
+{
+	double way = 0.5 * vec2_norm(sphere->vel) * (camera->def.exposure_time + camera->def.shutter_time);
+	struct box box = box_around(camera, sphere->centre, sphere->radius + way, sphere->radius);
+	struct vec3 to = sub(sphere->centre, eye);
+	double rim = 0.95 * sqrt(dot(to, to)) / fmin(camera->camera.in.fx, camera->camera.in.fy) / sphere->radius;
+	for (int y = box.y0; y < box.y1; y++)
+		for (int x = box.x0; x < box.x1; x++)
+			draw_moving_pixel(camera, sphere, eye, rim, (const int[]){x, y});
+}
+
 static void draw_ball(struct table_camera *camera, const struct sphere *sphere, struct vec3 eye)
 {
 	struct box box = box_around(camera, sphere->centre, sphere->radius, sphere->radius);
@@ -282,7 +332,8 @@ static int sort_spheres(const struct table_camera *camera, const struct ball *ba
 		if (ball[i].phase == BALL_POTTED)
 			continue;
 		struct sphere sphere = {.centre = {ball[i].pos.x, ball[i].pos.y, camera->table.ball_radius},
-					.radius = camera->table.ball_radius};
+					.radius = camera->table.ball_radius,
+					.vel = ball[i].vel};
 		table_scene_light(&camera->scene, ball[i].pos, sphere.room);
 		cloth_around(&camera->scene, ball[i].pos, sphere.radius, sphere.cloth);
 		for (int c = 0; c < 3; c++) {
@@ -309,6 +360,9 @@ void table_camera_draw_balls(struct table_camera *camera, const struct ball *bal
 	int n = sort_spheres(camera, ball, count, eye, sphere);
 	for (int i = 0; i < n; i++)
 		draw_shadow(camera, &sphere[i]);
-	for (int i = 0; i < n; i++)
-		draw_ball(camera, &sphere[i], eye);
+	for (int i = 0; i < n; i++) {
+		bool still = blur_samples(camera, &sphere[i]) == 1 &&
+			     vec2_norm(sphere[i].vel) * camera->def.shutter_time < BLUR_STEP / 4;
+		(still ? draw_ball : draw_moving)(camera, &sphere[i], eye);
+	}
 }

@@ -26,6 +26,7 @@ struct table_camera {
 	struct table_scene scene;
 	double projector_at[3], lamp_at[3]; /* m */
 	struct picture picture;
+	struct table_disturbance disturbance;
 	float *cloth;	  /* per pixel x, y: where its ray meets z = 0 */
 	float *spot;	  /* per pixel x, y: px of the projector that lights what is seen there */
 	uint8_t *surface; /* per pixel: enum surface at its middle */
@@ -48,5 +49,7 @@ float table_camera_gain(const struct table_camera *camera, int x, int y);
 void table_camera_picture_at(const struct table_camera *camera, vec2 at, double height, float rgb[3]);
 /* Balls and their shadows into work. */
 void table_camera_draw_balls(struct table_camera *camera, const struct ball *ball, int count);
+/* Arm and cue and their shadows into work. */
+void table_camera_draw_arm(struct table_camera *camera, const struct table_arm *arm);
 
 #endif
