@@ -9,8 +9,13 @@ static const double CUT_MIN_COS = 0.139; /* 82 degrees: thinner cuts are not est
 static const double COLOUR_POINTS = 5.3; /* mean of the colour that follows a red in a good visit */
 /* Share of what the average visit brings that a miss leaves to the opponent, and that a safety shot leaves. */
 static const double MISS_SHARE = 0.35, SAFE_SHARE = 0.06;
-static const double SNOOKERED = -2;   /* points: no ball on can be hit directly */
-static const double IN_HAND_FOUL = 0; /* points come with the foul itself */
+static const double SNOOKERED = -2; /* points: no ball on can be hit directly */
+static const double LEAST_GAIN = 0.2;
+static const double TOUCHING = 1e-4, OVERLAP = 1e-3; /* m; share of the diameter that a camera's errors make */
+static const double EDGE = 0.9;			     /* of the diameter beside the middle: a thin contact */
+/* An error of the tip, as a share of the radius, is felt as so many radians of the aim: swerve. Measured: at half a
+ * radius of side and 2 m/s, 0.01 over a metre. */
+static const double TIP_TO_ANGLE = 0.02;
 
 double within_chance(double half, double bias, double sigma)
 {
@@ -20,19 +25,19 @@ double within_chance(double half, double bias, double sigma)
 	return (erf((half - bias) * k) + erf((half + bias) * k)) / 2;
 }
 
-static int find_cue(const struct ball *ball, int count)
+static int find_cue(const struct setting *from)
 {
-	for (int i = 0; i < count; i++)
-		if (ball[i].colour == COLOUR_WHITE && ball[i].phase != BALL_POTTED)
+	for (int i = 0; i < from->count; i++)
+		if (from->ball[i].colour == COLOUR_WHITE && from->ball[i].phase != BALL_POTTED)
 			return i;
 	return -1;
 }
 
-static int count_reds(const struct ball *ball, int count)
+static int count_reds(const struct setting *from)
 {
 	int reds = 0;
-	for (int i = 0; i < count; i++)
-		reds += ball[i].colour == COLOUR_RED && ball[i].phase != BALL_POTTED;
+	for (int i = 0; i < from->count; i++)
+		reds += from->ball[i].colour == COLOUR_RED && from->ball[i].phase != BALL_POTTED;
 	return reds;
 }
 
@@ -42,34 +47,34 @@ static int points_of(const struct ball *ball)
 }
 
 /* What the visit may bring after this pot. */
-static double after_pot(const struct estimator *e, const struct rules_state *rules, const struct ball *ball, int count,
-			int index)
+static double after_pot(const struct estimator *e, const struct setting *from, int index)
 {
-	int reds = count_reds(ball, count);
-	switch (rules->on) {
+	int reds = count_reds(from);
+	switch (from->rules->on) {
 	case ON_RED:
 		return e->going_on[ON_COLOUR][reds > 0 ? reds - 1 : 0];
 	case ON_COLOUR:
 		return reds > 0 ? e->going_on[ON_RED][reds] : e->going_on[ON_CLEARANCE][COLOUR_YELLOW];
 	case ON_CLEARANCE:
-		return ball[index].colour < COLOUR_BLACK ? e->going_on[ON_CLEARANCE][ball[index].colour + 1] : 0;
+		if (from->ball[index].colour >= COLOUR_BLACK)
+			return 0;
+		return e->going_on[ON_CLEARANCE][from->ball[index].colour + 1];
 	default:
 		return e->going_on[ON_ANY][1];
 	}
 }
 
 /* What the average visit from here brings. */
-static double average_visit(const struct estimator *e, const struct rules_state *rules, const struct ball *ball,
-			    int count)
+static double average_visit(const struct estimator *e, const struct setting *from)
 {
-	int reds = count_reds(ball, count);
-	if (rules->on == ON_ANY)
+	int reds = count_reds(from);
+	if (from->rules->on == ON_ANY)
 		return e->going_on[ON_ANY][1];
 	if (reds > 0)
 		return e->going_on[ON_RED][reds];
 	for (int c = COLOUR_YELLOW; c <= COLOUR_BLACK; c++)
-		for (int i = 0; i < count; i++)
-			if (ball[i].phase != BALL_POTTED && (int)ball[i].colour == c)
+		for (int i = 0; i < from->count; i++)
+			if (from->ball[i].phase != BALL_POTTED && (int)from->ball[i].colour == c)
 				return e->going_on[ON_CLEARANCE][c];
 	return 0;
 }
@@ -88,177 +93,166 @@ static void fill_going_on(struct estimator *e)
 	}
 }
 
-/* Geometry of ball index into a pocket, without looking at what stands in the way. False when it cannot be. */
-static bool set_pot(const struct estimator *e, const struct ball *ball, int cue, int index, int pocket, struct pot *pot)
+/* Ways and cut of an object ball into pot->pocket, whatever stands in the way. False when it cannot be. */
+static bool set_ways(const struct estimator *e, vec2 white, vec2 object, struct pot *pot)
 {
-	const struct table *table = e->table;
-	double d = 2 * table->ball_radius;
-	vec2 at = ball[index].pos, white = ball[cue].pos;
-	vec2 way = vec2_unit(vec2_sub(table->pocket[pocket].centre, at));
-	struct window w = acceptance_at(&e->acceptance, table, pocket, way, POT_SPEED);
+	double d = 2 * e->table->ball_radius;
+	vec2 centre = e->table->pocket[pot->pocket].centre;
+	vec2 way = vec2_unit(vec2_sub(centre, object));
+	struct window w = acceptance_at(&e->acceptance, e->table, pot->pocket, way, POT_SPEED);
 	if (w.high <= w.low)
 		return false;
-	pot->goal = vec2_madd(table->pocket[pocket].centre, (w.low + w.high) / 2, vec2_perp(way));
-	vec2 to = vec2_sub(pot->goal, at);
-	double far = vec2_norm(to), apart = vec2_dist(at, white);
-	if (far < 1e-6 || apart < d * (1 - 1e-3))
+	pot->goal = vec2_madd(centre, (w.low + w.high) / 2, vec2_perp(way));
+	double far = vec2_dist(pot->goal, object), apart = vec2_dist(object, white);
+	if (far < TOUCHING || apart < d * (1 - OVERLAP))
 		return false;
-	way = vec2_scale(to, 1 / far);
-	vec2 ghost = vec2_madd(at, -d, way), aim = vec2_sub(ghost, white);
-	double lead = vec2_norm(aim);
-	vec2 axis = vec2_scale(vec2_sub(at, white), 1 / apart);
-	double cos_impact = vec2_dot(axis, way);
-	if (lead < 1e-4)
-		aim = way; /* it touches: only along the line of centres */
-	vec2 direction = vec2_unit(aim);
-	double cos_cut = vec2_dot(direction, way);
-	if (cos_cut < CUT_MIN_COS || cos_impact <= 0)
+	pot->way = vec2_scale(vec2_sub(pot->goal, object), 1 / far);
+	vec2 aim = vec2_sub(vec2_madd(object, -d, pot->way), white);
+	vec2 axis = vec2_scale(vec2_sub(object, white), 1 / apart);
+	/* a ball that touches can only be played along the line of centres */
+	vec2 direction = vec2_norm(aim) < TOUCHING ? pot->way : vec2_unit(aim);
+	double cos_cut = vec2_dot(direction, pot->way);
+	if (cos_cut < CUT_MIN_COS || vec2_dot(axis, pot->way) <= 0)
 		return false;
-	pot->ball = (int16_t)index;
-	pot->pocket = (int16_t)pocket;
-	pot->way = way;
 	pot->angle = atan2(direction.y, direction.x);
 	/* D sin(aim) = d sin(impact): differentiated */
-	pot->gain = fmax(0.2, apart * vec2_dot(direction, axis) / (d * cos_cut));
+	pot->gain = fmax(LEAST_GAIN, apart * vec2_dot(direction, axis) / (d * cos_cut));
 	pot->half = atan2((w.high - w.low) / 2, far);
-	pot->reach = far + lead;
 	return true;
 }
 
-static double chance_of(const struct estimator *e, const struct pot *pot)
+double aim_sigma(const struct player_error *error)
 {
-	/* An error of the tip turns a ball that is struck with side by nothing in this model, but its place still moves
-	 * what spin does: felt as a small error of direction. */
-	double tip = 0.02 * e->error.tip;
-	double sigma = pot->gain * hypot(e->error.angle, tip);
-	return within_chance(pot->half, pot->gain * e->error.angle_bias, sigma);
+	return hypot(error->angle, TIP_TO_ANGLE * error->tip);
 }
 
-static bool is_open(const struct estimator *e, const struct ball *ball, int count, int cue, const struct pot *pot)
+/* Fills in what the pot is worth; its ball, pocket, brings and costs are set. */
+static bool price(const struct estimator *e, const struct setting *from, int cue, struct pot *pot)
+{
+	if (!set_ways(e, from->ball[cue].pos, from->ball[pot->ball].pos, pot))
+		return false;
+	double bias = pot->gain * e->error.angle_bias;
+	pot->chance = within_chance(pot->half, bias, pot->gain * aim_sigma(&e->error));
+	pot->value = pot->chance * pot->brings - (1 - pot->chance) * pot->costs;
+	return true;
+}
+
+static bool is_open(const struct estimator *e, const struct setting *from, int cue, const struct pot *pot)
 {
 	double d = 2 * e->table->ball_radius;
-	vec2 at = ball[pot->ball].pos, ghost = vec2_madd(at, -d, pot->way);
-	const struct obstacles others = {ball, count, ~(1u << pot->ball | 1u << cue)};
-	return segment_is_free(&others, at, pot->goal, d) && segment_is_free(&others, ball[cue].pos, ghost, d);
+	vec2 at = from->ball[pot->ball].pos, ghost = vec2_madd(at, -d, pot->way);
+	const struct obstacles others = {from->ball, from->count, ~(1u << pot->ball | 1u << cue)};
+	return segment_is_free(&others, at, pot->goal, d) && segment_is_free(&others, from->ball[cue].pos, ghost, d);
+}
+
+static struct pot pot_of(const struct estimator *e, const struct setting *from, int ball, double costs)
+{
+	return (struct pot){
+		.ball = (int16_t)ball,
+		.brings = points_of(&from->ball[ball]) + after_pot(e, from, ball),
+		.costs = costs,
+	};
 }
 
 static void insert_pot(struct pot *list, int *count, const struct pot *pot)
 {
 	int at = *count < POTS_MAX ? (*count)++ : POTS_MAX;
-	while (at > 0 && pot->value > list[at - 1].value) {
+	for (; at > 0 && pot->value > list[at - 1].value; at--)
 		if (at < POTS_MAX)
 			list[at] = list[at - 1];
-		at--;
-	}
 	if (at < POTS_MAX)
 		list[at] = *pot;
 }
 
-int estimate_pots(const struct estimator *e, const struct rules_state *rules, const struct ball *ball, int count,
-		  double least, struct pot list[POTS_MAX])
+int estimate_pots(const struct estimator *e, const struct setting *from, double least, struct pot list[POTS_MAX])
 {
-	int found = 0, cue = find_cue(ball, count);
-	double miss = MISS_SHARE * average_visit(e, rules, ball, count);
-	for (int i = 0; cue >= 0 && i < count; i++) {
-		if (!rules_ball_on(rules, ball, count, i))
+	int found = 0, cue = find_cue(from);
+	double costs = MISS_SHARE * average_visit(e, from);
+	for (int i = 0; cue >= 0 && i < from->count; i++) {
+		if (!rules_ball_on(from->rules, from->ball, from->count, i))
 			continue;
-		double gain = points_of(&ball[i]) + after_pot(e, rules, ball, count, i);
-		for (int p = 0; p < e->table->pocket_count; p++) {
-			struct pot pot;
-			if (!set_pot(e, ball, cue, i, p, &pot))
-				continue;
-			pot.chance = chance_of(e, &pot);
-			if (pot.chance < least || !is_open(e, ball, count, cue, &pot))
-				continue;
-			pot.brings = gain;
-			pot.costs = miss;
-			pot.value = pot.chance * gain - (1 - pot.chance) * miss;
-			insert_pot(list, &found, &pot);
-		}
+		struct pot pot = pot_of(e, from, i, costs);
+		for (pot.pocket = 0; pot.pocket < e->table->pocket_count; pot.pocket++)
+			if (price(e, from, cue, &pot) && pot.chance >= least && is_open(e, from, cue, &pot))
+				insert_pot(list, &found, &pot);
 	}
 	return found;
 }
 
 /* A ball on that can be hit full, or at an edge, directly. */
-static bool can_hit(const struct estimator *e, const struct rules_state *rules, const struct ball *ball, int count,
-		    int cue)
+static bool can_hit(const struct estimator *e, const struct setting *from, int cue)
 {
 	double d = 2 * e->table->ball_radius;
-	for (int i = 0; i < count; i++) {
-		if (!rules_ball_on(rules, ball, count, i))
+	vec2 white = from->ball[cue].pos;
+	for (int i = 0; i < from->count; i++) {
+		if (!rules_ball_on(from->rules, from->ball, from->count, i))
 			continue;
-		const struct obstacles others = {ball, count, ~(1u << i | 1u << cue)};
-		vec2 across = vec2_perp(vec2_unit(vec2_sub(ball[i].pos, ball[cue].pos)));
-		for (int side = -1; side <= 1; side++) {
-			vec2 to = vec2_madd(ball[i].pos, 0.9 * side * d, across);
-			if (segment_is_free(&others, ball[cue].pos, to, d))
+		const struct obstacles others = {from->ball, from->count, ~(1u << i | 1u << cue)};
+		vec2 across = vec2_perp(vec2_unit(vec2_sub(from->ball[i].pos, white)));
+		for (int side = -1; side <= 1; side++)
+			if (segment_is_free(&others, white, vec2_madd(from->ball[i].pos, EDGE * side * d, across), d))
 				return true;
-		}
 	}
 	return false;
 }
 
-static double value_from(const struct estimator *e, const struct rules_state *rules, const struct ball *ball, int count,
-			 int cue)
+static double value_from(const struct estimator *e, const struct setting *from, int cue)
 {
-	double average = average_visit(e, rules, ball, count);
-	double miss = MISS_SHARE * average, best = -SAFE_SHARE * average;
+	double average = average_visit(e, from);
+	double best = -SAFE_SHARE * average;
 	bool any = false;
-	for (int i = 0; i < count; i++) {
-		if (!rules_ball_on(rules, ball, count, i))
+	for (int i = 0; i < from->count; i++) {
+		if (!rules_ball_on(from->rules, from->ball, from->count, i))
 			continue;
-		double gain = points_of(&ball[i]) + after_pot(e, rules, ball, count, i);
-		for (int p = 0; p < e->table->pocket_count; p++) {
-			struct pot pot;
-			if (!set_pot(e, ball, cue, i, p, &pot))
+		struct pot pot = pot_of(e, from, i, MISS_SHARE * average);
+		for (pot.pocket = 0; pot.pocket < e->table->pocket_count; pot.pocket++) {
+			/* what is not better need not be open */
+			if (!price(e, from, cue, &pot) || pot.value <= best || !is_open(e, from, cue, &pot))
 				continue;
-			double chance = chance_of(e, &pot);
-			double value = chance * gain - (1 - chance) * miss;
-			if (value <= best || !is_open(e, ball, count, cue, &pot))
-				continue;
-			best = value;
+			best = pot.value;
 			any = true;
 		}
 	}
-	if (!any && average > 0 && !can_hit(e, rules, ball, count, cue))
+	if (!any && average > 0 && !can_hit(e, from, cue))
 		return SNOOKERED - SAFE_SHARE * average;
 	return best;
 }
 
 /* The best of some places in the D. */
-static double value_in_hand(const struct estimator *e, const struct rules_state *rules, const struct ball *ball,
-			    int count)
+static double value_in_hand(const struct estimator *e, const struct setting *from)
 {
 	static const double place[][2] = {{0, 0}, {0, 0.95}, {0, -0.95}, {0, 0.5}, {0, -0.5}, {0.6, 0.4}, {0.6, -0.4}};
 	const struct table *table = e->table;
 	struct ball copy[BALL_MAX];
 	int cue = -1;
-	for (int i = 0; i < count; i++) {
-		copy[i] = ball[i];
-		if (ball[i].colour == COLOUR_WHITE)
+	for (int i = 0; i < from->count; i++) {
+		copy[i] = from->ball[i];
+		if (copy[i].colour == COLOUR_WHITE)
 			cue = i;
 	}
 	if (cue < 0)
 		return 0;
+	struct setting placed = *from;
+	placed.ball = copy;
 	double best = -INFINITY;
 	for (size_t k = 0; k < sizeof place / sizeof *place; k++) {
 		copy[cue].phase = BALL_POTTED;
 		vec2 at = {table->baulk_d_centre.x - place[k][0] * table->baulk_d_radius,
 			   table->baulk_d_centre.y + place[k][1] * table->baulk_d_radius};
-		if (!respot_is_free(table, copy, count, at))
+		if (!respot_is_free(table, copy, from->count, at))
 			continue;
 		copy[cue] = ball_at(COLOUR_WHITE, at);
-		best = fmax(best, value_from(e, rules, copy, count, cue));
+		best = fmax(best, value_from(e, &placed, cue));
 	}
-	return isfinite(best) ? best + IN_HAND_FOUL : 0;
+	return isfinite(best) ? best : 0;
 }
 
-double estimate_value(const struct estimator *e, const struct rules_state *rules, const struct ball *ball, int count)
+double estimate_value(const struct estimator *e, const struct setting *from)
 {
-	int cue = find_cue(ball, count);
-	if (rules->in_hand || cue < 0)
-		return value_in_hand(e, rules, ball, count);
-	return value_from(e, rules, ball, count, cue);
+	int cue = find_cue(from);
+	if (from->rules->in_hand || cue < 0)
+		return value_in_hand(e, from);
+	return value_from(e, from, cue);
 }
 
 /* ---- how well this player keeps a visit going -----------------------------------------------------------------------
@@ -301,8 +295,9 @@ static double mean_best_chance(const struct estimator *e)
 		ball[count] = ball_at(COLOUR_WHITE, free_place(e->table, ball, count, &state));
 		count++;
 		struct rules_state rules = {.on = t % 2 ? ON_COLOUR : ON_RED};
+		const struct setting from = {e->table, NULL, ball, count, &rules};
 		struct pot pot[POTS_MAX];
-		int pots = estimate_pots(e, &rules, ball, count, 0, pot);
+		int pots = estimate_pots(e, &from, 0, pot);
 		double best = 0;
 		for (int i = 0; i < pots; i++)
 			best = fmax(best, pot[i].chance);

@@ -5,7 +5,7 @@
 
 #include "search/acceptance.h"
 #include "search/player_error.h"
-#include "search/rules.h"
+#include "search/shot.h"
 
 enum { POTS_MAX = 64 };
 
@@ -38,18 +38,19 @@ struct pot {
 	double brings; /* points, its own and what may follow */
 	double costs;  /* points, of a miss */
 	double value;  /* points: chance * brings - (1 - chance) * costs */
-	double reach;  /* m, ways of both balls */
 };
 
 /* The chance that a normal error of sigma, off by bias, stays within +-half. */
 double within_chance(double half, double bias, double sigma);
 
+/* rad, 1 sigma of the cue ball's direction with what an error of the tip adds. */
+double aim_sigma(const struct player_error *error);
+
 /* The pots there are with a chance of at least least, best value first; at most POTS_MAX. */
-int estimate_pots(const struct estimator *estimator, const struct rules_state *rules, const struct ball *ball,
-		  int count, double least, struct pot pot[POTS_MAX]);
+int estimate_pots(const struct estimator *estimator, const struct setting *from, double least,
+		  struct pot pot[POTS_MAX]);
 
 /* Value of the position to the player at the table. In hand: the best of some places in the D. */
-double estimate_value(const struct estimator *estimator, const struct rules_state *rules, const struct ball *ball,
-		      int count);
+double estimate_value(const struct estimator *estimator, const struct setting *from);
 
 #endif

@@ -67,7 +67,7 @@ bool stroke_aim(const struct estimator *e, const struct model *model, const stru
 			slope = (miss - last_miss) / (aimed->shot.angle - last_angle);
 		if (fabs(miss) * vec2_norm(want) < GOOD && i > 0) {
 			aimed->gain = fabs(slope);
-			double sigma = hypot(aimed->gain * e->error.angle, 0.02 * e->error.tip);
+			double sigma = aimed->gain * aim_sigma(&e->error);
 			aimed->chance = within_chance(half, aimed->gain * e->error.angle_bias, sigma);
 			return true;
 		}

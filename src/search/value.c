@@ -88,16 +88,18 @@ double value_of_outcome(struct value_search *v, struct value_worker *worker, con
 {
 	int count = v->request.ball_count;
 	if (record->foul == 0 && record->points > 0) {
-		double next = deep ? value_next_shot(v, worker, &outcome->next, outcome->ball)
-				   : estimate_value(&v->estimator, &outcome->next, outcome->ball, count);
-		return record->points + next;
+		const struct setting next = {v->table, &v->model, outcome->ball, count, &outcome->next};
+		return record->points +
+		       (deep ? value_next_shot(v, worker, &next) : estimate_value(&v->estimator, &next));
 	}
 	struct rules_state theirs = outcome->next;
 	if (outcome->next.on != ON_ANY)
-		theirs = rules_state_from_position(outcome->ball, count);
+		theirs = record->foul > 0 ? rules_opponent(v->table, outcome, count)
+					  : rules_state_from_position(outcome->ball, count);
 	theirs.in_hand = outcome->cue_potted;
 	theirs.any_first = outcome->next.any_first;
-	return -record->foul - estimate_value(&v->estimator, &theirs, outcome->ball, count);
+	const struct setting next = {v->table, &v->model, outcome->ball, count, &theirs};
+	return -record->foul - estimate_value(&v->estimator, &next);
 }
 
 static bool is_before(const struct stroke *a, const struct stroke *b)

@@ -108,9 +108,9 @@ static void find_pots(struct value_search *v)
 	v->opening_count = 0;
 	for (int r = 0; r < v->request.root_count; r++) {
 		const struct value_root *root = &v->request.root[r];
+		const struct setting from = {v->table, &v->model, root->ball, v->request.ball_count, &root->rules};
 		struct pot pot[POTS_MAX];
-		int pots =
-			estimate_pots(&v->estimator, &root->rules, root->ball, v->request.ball_count, CHANCE_MIN, pot);
+		int pots = estimate_pots(&v->estimator, &from, CHANCE_MIN, pot);
 		for (int i = 0; i < pots; i++)
 			if (root->wanted >> pot[i].ball & 1)
 				add_opening(v, &pot[i], r);
@@ -165,32 +165,29 @@ void value_open(struct value_search *v)
 	value_sort(v);
 }
 
-double value_next_shot(struct value_search *v, struct value_worker *worker, const struct rules_state *rules,
-		       const struct ball *ball)
+double value_next_shot(struct value_search *v, struct value_worker *worker, const struct setting *from)
 {
 	enum { NEXT_POTS = 3, NEXT_SPEEDS = 4, NEXT_FOLLOWS = 3 };
 	static const double speeds[NEXT_SPEEDS] = {0.8, 1.4, 2.2, 3.4};
-	int count = v->request.ball_count;
-	const struct setting from = {v->table, &v->model, ball, count, rules};
-	double best = estimate_value(&v->estimator, rules, ball, count);
+	double best = estimate_value(&v->estimator, from);
 	struct pot pot[POTS_MAX];
 	struct record record;
 	struct rules_outcome outcome;
-	if (rules->in_hand)
+	if (from->rules->in_hand)
 		return best;
-	int pots = estimate_pots(&v->estimator, rules, ball, count, CHANCE_MIN, pot);
+	int pots = estimate_pots(&v->estimator, from, CHANCE_MIN, pot);
 	double found = -INFINITY;
 	for (int i = 0; i < pots && i < NEXT_POTS; i++) {
 		struct opening opening = {pot[i], 0};
 		for (int k = 0; k < NEXT_SPEEDS * NEXT_FOLLOWS; k++) {
 			struct aimed aimed = {
 				.shot = {.speed = speeds[k / NEXT_FOLLOWS], .follow = FOLLOWS[k % NEXT_FOLLOWS]}};
-			if (value_is_over(v) || !stroke_aim(&v->estimator, &v->model, &ball[v->request.cue],
-							    &ball[pot[i].ball], &pot[i], &aimed))
+			if (value_is_over(v) || !stroke_aim(&v->estimator, &v->model, &from->ball[v->request.cue],
+							    &from->ball[pot[i].ball], &pot[i], &aimed))
 				continue;
 			set_record(v, &opening, &aimed, &record);
 			worker->sims++;
-			if (!shot_play(&worker->work, &from, &record, &outcome) || record.foul != 0 ||
+			if (!shot_play(&worker->work, from, &record, &outcome) || record.foul != 0 ||
 			    record.points == 0)
 				continue;
 			double end = value_of_outcome(v, worker, &record, &outcome, false);

@@ -87,7 +87,6 @@ void value_race(struct value_search *value);
 void value_sort(struct value_search *value);
 
 /* The best value that a stroke at one of the best pots promises: the second ply. */
-double value_next_shot(struct value_search *value, struct value_worker *worker, const struct rules_state *rules,
-		       const struct ball *ball);
+double value_next_shot(struct value_search *value, struct value_worker *worker, const struct setting *from);
 
 #endif
