@@ -65,7 +65,7 @@ static void write_conf(void)
 	snprintf(command, sizeof command,
 		 "sed -e 's#\"colours.json\"#\"%s/config/colours.json\"#' -e 's/v4l2:.dev.video0/lcm:CAMERA/' -e "
 		 "'s/think_time = [0-9.]*/think_time = 300/' "
-		 "-e 's/time_scale = [0-9.]*/time_scale = 8/' -e 's/still_frames = [0-9]*/still_frames = 5/' -e "
+		 "-e 's/time_scale = [0-9.]*/time_scale = 8/' -e 's/still_time = [0-9.]*/still_time = 250/' -e "
 		 "'s/error_angle = [0-9.]*/error_angle = 0/' "
 		 "-e 's/name = \"billiard-table\"; arguments = \"\"; enabled = false/name = \"billiard-table\"; "
 		 "arguments = \"\"; enabled = true/' "

@@ -21,7 +21,7 @@ static struct config config; /* too large for the stack */
 static struct controller c;
 static billiard_table_state_t state;
 static double now;
-static int64_t draws, requests, cancels;
+static int64_t draws, requests, sent, cancels, last_id; /* requests: each once; sent: repeated ones, too */
 
 static void place(int i, enum ball_colour colour, double x, double y)
 {
@@ -66,7 +66,7 @@ static void setup(void)
 	place(2, COLOUR_RED, 0.5, -0.2);
 	place(3, COLOUR_BLACK, 0.8938, 0);
 	now = 100;
-	draws = requests = cancels = 0;
+	draws = requests = sent = cancels = last_id = 0;
 }
 
 /* What the process around it would send. */
@@ -75,7 +75,9 @@ static struct controller_output flush(void)
 	struct controller_output out = c.output;
 	c.output = (struct controller_output){0};
 	draws += out.draw;
-	requests += out.request;
+	sent += out.request;
+	requests += out.request && c.request.id != last_id;
+	last_id = out.request ? c.request.id : last_id;
 	cancels += out.cancel;
 	return out;
 }
@@ -165,7 +167,7 @@ static void proposed(void)
 
 START_TEST(a_resting_table_is_asked_for_once)
 {
-	frames(config.infinity.still_frames);
+	frames((int)(30 * config.infinity.still_time));
 	ck_assert_int_eq(requests, 0);
 	frames(MANY);
 	ck_assert_int_eq(requests, 1);
@@ -279,6 +281,7 @@ START_TEST(improved_answers_replace_repeated_ones_do_not)
 	proposed();
 	billiard_plan_t *plan = answer(PLAN_MESSAGE_OK, 0.9);
 	plan->sequence = 3;
+	plan->entries[0].cost = -1;
 	ck_assert(take(plan));
 	ck_assert_double_eq(c.plan.entries[0].shots[0].angle, 0.9);
 	plan = answer(PLAN_MESSAGE_OK, 0.2);
@@ -286,6 +289,60 @@ START_TEST(improved_answers_replace_repeated_ones_do_not)
 	ck_assert(take(plan));
 	ck_assert_double_eq(c.plan.entries[0].shots[0].angle, 0.9);
 	ck_assert_int_eq(c.proposals, 1);
+}
+END_TEST
+
+/* What is drawn first stays: only what is better by the margin takes its place. */
+START_TEST(a_proposal_changes_only_for_a_better_one)
+{
+	frames(MANY);
+	billiard_plan_t *plan = answer(PLAN_MESSAGE_OK, 0.5);
+	plan->entries[0].cost = 2;
+	ck_assert(take(plan));
+	int64_t before = draws;
+	flush();
+	plan = answer(PLAN_MESSAGE_OK, 0.9);
+	plan->sequence = 1;
+	plan->entries[0].cost = 2 - 0.9 * config.infinity.better_margin * 2;
+	ck_assert(take(plan));
+	flush();
+	ck_assert_int_eq(draws, before + 1);
+	ck_assert_double_eq(c.plan.entries[0].shots[0].angle, 0.5);
+	plan = answer(PLAN_MESSAGE_OK, 0.9);
+	plan->sequence = 2;
+	plan->entries[0].cost = 2 - 1.1 * config.infinity.better_margin * 2;
+	ck_assert(take(plan));
+	ck_assert_double_eq(c.plan.entries[0].shots[0].angle, 0.9);
+	/* Who looks at another one is not interrupted. */
+	command("next", "");
+	plan = answer(PLAN_MESSAGE_OK, 0.1);
+	plan->sequence = 3;
+	plan->entries[0].cost = -100;
+	ck_assert(take(plan));
+	ck_assert_double_eq(c.plan.entries[0].shots[0].angle, 0.9);
+}
+END_TEST
+
+/* One that is not final is shown when it has stayed the same for a tenth of a second. */
+START_TEST(a_proposal_is_shown_when_it_has_settled)
+{
+	frames(MANY);
+	for (int i = 0; i < 20; i++) {
+		billiard_plan_t *plan = answer(PLAN_MESSAGE_OK, 0.1 * i);
+		plan->is_final = 0;
+		plan->sequence = i;
+		ck_assert(take(plan));
+		frames(2);
+		ck_assert_int_eq(c.fsm.state, FSM_PLANNING);
+	}
+	frames(2);
+	ck_assert_int_eq(c.fsm.state, FSM_SHOWING);
+	ck_assert_double_eq(c.plan.entries[0].shots[0].angle, 0.1 * 19);
+	/* The last one says the same: nothing is drawn anew but what it adds. */
+	billiard_plan_t *plan = answer(PLAN_MESSAGE_OK, 0.1 * 19);
+	plan->sequence = 20;
+	ck_assert(take(plan));
+	ck_assert(c.plan.is_final && c.proposals == 1);
 }
 END_TEST
 
@@ -313,11 +370,16 @@ START_TEST(a_lost_request_or_answer_is_repeated)
 {
 	frames(MANY);
 	int64_t id = c.request.id;
-	int wait = (int)(config.infinity.plan_timeout * 30) + 5;
-	frames(wait);
-	ck_assert(requests == 2 && c.request.id == id);
-	frames(wait);
-	ck_assert_int_eq(requests, 3);
+	/* Half a second after the first, and again: always the same one. */
+	ck_assert(sent >= 3 && requests == 1);
+	int64_t before = sent;
+	while (sent == before)
+		frames(1);
+	double last = now;
+	while (sent == before + 1)
+		frames(1);
+	ck_assert_double_le(now - last, 0.5 + 2e-6 * FRAME_US);
+	ck_assert(requests == 1 && c.request.id == id);
 	ck_assert(take(answer(PLAN_MESSAGE_OK, 0.5)));
 	ck_assert_int_eq(c.fsm.state, FSM_SHOWING);
 }
@@ -330,7 +392,7 @@ START_TEST(a_request_that_somebody_else_cancelled_gets_a_new_id)
 	ck_assert(take(answer(PLAN_MESSAGE_CANCELLED, 0)));
 	ck_assert_int_eq(c.fsm.state, FSM_PLANNING);
 	frames((int)(config.infinity.plan_timeout * 30) + 5);
-	ck_assert(requests == 2 && c.request.id > id);
+	ck_assert(c.request.id > id);
 }
 END_TEST
 
@@ -340,12 +402,11 @@ START_TEST(a_shot_without_an_end_is_given_up)
 	proposed();
 	shot();
 	ck_assert_int_eq(c.fsm.state, FSM_SHOT);
-	now += 45;
-	controller_tick(&c, now);
-	ck_assert_int_eq(c.fsm.state, FSM_SHOT);
-	now += 45;
-	controller_tick(&c, now);
+	/* Something stands over the table. */
+	state.occluded = 1;
+	frames(MANY + 3);
 	ck_assert_int_eq(c.fsm.state, FSM_WATCHING);
+	state.occluded = 0;
 	frames(MANY);
 	ck_assert(c.fsm.state == FSM_PLANNING && requests == 2);
 }
@@ -536,6 +597,212 @@ START_TEST(overlaps_of_a_camera_are_settled_in_the_request)
 }
 END_TEST
 
+/* ---- what cannot be, what is silent --------------------------------------------------------------------------------- */
+
+/* One ball in two tracks, 13 mm apart: nothing is asked, the table says it, and goes on when one of them is gone. */
+START_TEST(one_ball_seen_twice_is_not_asked_for)
+{
+	place(4, COLOUR_RED, 0.313, 0.2);
+	state.ball_count = 5;
+	frames(MANY);
+	ck_assert_int_eq(requests, 0);
+	ck_assert_int_eq(c.report.verdict, STABILITY_UNSURE);
+	frames(MANY);
+	ck_assert_str_eq(c.drawn_note, "RED at (300, 200): cannot lie there");
+	state.ball_count = 4;
+	frames(MANY);
+	ck_assert(requests == 1 && c.request.ball_count == 4);
+}
+END_TEST
+
+/* By the rules a colour is there once. */
+START_TEST(a_colour_seen_twice_is_not_asked_for_by_the_rules)
+{
+	config.infinity.rules = true;
+	place(2, COLOUR_BLACK, 0.5, -0.2);
+	frames(2 * MANY);
+	ck_assert_int_eq(requests, 0);
+	ck_assert_ptr_nonnull(strstr(c.drawn_note, "BLACK"));
+	config.infinity.rules = false;
+	frames(MANY);
+	ck_assert_int_eq(requests, 1);
+}
+END_TEST
+
+/* What is asked for is what lies there, in a pocket's jaws, too. */
+START_TEST(a_ball_in_the_jaws_is_asked_for_where_it_hangs)
+{
+	place(3, COLOUR_BLUE, -0.9299, -0.3964);
+	frames(MANY);
+	ck_assert_int_eq(requests, 1);
+	ck_assert_double_eq_tol(c.request.balls[3].x, -0.9299, 5e-4);
+	ck_assert_double_eq_tol(c.request.balls[3].y, -0.3964, 5e-4);
+	struct plan_request r;
+	char err[96];
+	ck_assert_msg(plan_request_from_message(&r, &c.request, &config.table, err, sizeof err) == 0, "%s", err);
+}
+END_TEST
+
+START_TEST(a_nudge_of_more_than_half_a_millimetre_asks_anew)
+{
+	proposed();
+	state.balls[1].x += 0.0004;
+	frames(MANY);
+	ck_assert(requests == 1 && c.fsm.state == FSM_SHOWING);
+	state.balls[1].x += 0.0003;
+	frames(MANY);
+	ck_assert(requests == 2 && c.request.balls[1].x == state.balls[1].x);
+}
+END_TEST
+
+/* A ball carried 300 mm by hand, slowly: light for where it was is gone at once, and what comes is for where it is. */
+START_TEST(a_ball_carried_300_mm)
+{
+	proposed();
+	for (int i = 0; i < 90; i++) {
+		state.occluded = 1;
+		state.balls[2].x -= 0.3 / 90;
+		frames(1);
+		if (i > 3)
+			ck_assert_int_eq(c.draw.plan_id, 0);
+	}
+	state.occluded = 0;
+	frames(MANY);
+	ck_assert(requests == 2 && c.request.balls[2].x == state.balls[2].x);
+}
+END_TEST
+
+/* A drift of 2 mm/s: no proposal while it goes on. */
+START_TEST(a_drift_of_2_mm_s_takes_the_proposal_off)
+{
+	proposed();
+	for (int i = 0; i < 150; i++) {
+		state.balls[2].y += 0.002 / 30;
+		frames(1);
+		if (i > 15)
+			ck_assert_int_eq(c.draw.plan_id, 0);
+	}
+	ck_assert_int_eq(requests, 1);
+	frames(MANY);
+	ck_assert_int_eq(requests, 2);
+}
+END_TEST
+
+/* An arm over the table for a minute, no proposal yet: after two seconds the table says what it waits for. */
+START_TEST(an_arm_for_a_minute_is_told)
+{
+	state.occluded = 1;
+	for (int i = 0; i < 60 * 30; i++) {
+		frames(1);
+		if (i > 75)
+			ck_assert_str_eq(c.drawn_note, "something is over the table");
+	}
+	ck_assert_int_eq(requests, 0);
+	ck_assert_int_eq(c.report.verdict, STABILITY_UNSURE);
+	ck_assert_str_eq((const char *)c.report.word, "something is over the table");
+	ck_assert(!c.report.conditions[STABILITY_CLEAR].holds && c.report.conditions[STABILITY_STILL].holds);
+	state.occluded = 0;
+	frames(MANY);
+	ck_assert_int_eq(requests, 1);
+}
+END_TEST
+
+/* Lights off and on: the same balls lie there, the same proposal comes back, nothing is asked. */
+START_TEST(lights_off_and_on)
+{
+	proposed();
+	int64_t id = c.request.id;
+	state.calibration = 0;
+	frames(MANY);
+	ck_assert(c.fsm.state == FSM_BLIND && c.draw.plan_id == 0);
+	state.calibration = 1;
+	frames(MANY);
+	ck_assert(c.fsm.state == FSM_SHOWING && c.draw.plan_id == id && requests == 1);
+}
+END_TEST
+
+/* A ball that blinks: seen in nine of ten frames only. */
+START_TEST(a_blinking_ball_is_told)
+{
+	for (int i = 0; i < 150; i++) {
+		state.ball_count = i % 10 ? 4 : 3;
+		frames(1);
+	}
+	ck_assert_int_eq(requests, 0);
+	ck_assert_str_eq(c.drawn_note, "a ball comes and goes");
+	frames(MANY);
+	ck_assert_int_eq(requests, 1);
+}
+END_TEST
+
+/* Two false white balls beside the cue ball: they are left out. Without it, nobody guesses which is the cue ball. */
+START_TEST(two_false_whites)
+{
+	frames(3);
+	place(4, COLOUR_WHITE, 0.7, 0.3);
+	place(5, COLOUR_WHITE, 0.7, -0.3);
+	state.ball_count = 6;
+	frames(MANY);
+	ck_assert(requests == 1 && c.request.ball_count == 4 && c.request.balls[0].x == -0.3);
+	shot();
+	state.balls[0] = state.balls[5];
+	state.ball_count = 5;
+	frames(2 * MANY);
+	ck_assert_int_eq(requests, 1);
+	ck_assert_str_eq(c.drawn_note, "which white ball is the cue ball?");
+}
+END_TEST
+
+/* Vision is silent: told within a second, in every state; with the frames the proposal comes back. */
+START_TEST(silence_of_vision_is_told_within_a_second)
+{
+	proposed();
+	int64_t id = c.request.id;
+	double last = now;
+	while (c.draw.plan_id) {
+		now += 0.05;
+		controller_tick(&c, now);
+		flush();
+		ck_assert_double_le(now - last, 1);
+	}
+	ck_assert_str_eq(c.drawn_note, "no pictures: billiard-vision is silent");
+	ck_assert_int_eq(c.fsm.state, FSM_BLIND);
+	int64_t before = draws;
+	for (int i = 0; i < 100; i++)
+		controller_tick(&c, now += 0.05);
+	flush();
+	ck_assert_int_eq(draws, before);
+	frames(MANY);
+	ck_assert(c.fsm.state == FSM_SHOWING && c.draw.plan_id == id && requests == 1);
+}
+END_TEST
+
+START_TEST(silence_of_the_planner_is_told_within_a_second)
+{
+	while (requests == 0)
+		frames(1);
+	frames(31);
+	ck_assert_str_eq(c.drawn_note, "no answer from the planner yet");
+	ck_assert(c.fsm.state == FSM_PLANNING && sent == 2);
+	ck_assert(take(answer(PLAN_MESSAGE_OK, 0.5)));
+	ck_assert(c.fsm.state == FSM_SHOWING && c.draw.plan_id == c.request.id);
+}
+END_TEST
+
+/* Rings stand around balls that rest; when one moves they go, whatever the controller does just then. */
+START_TEST(rings_go_when_a_ball_moves_while_planning)
+{
+	proposed();
+	state.balls[1].y += 0.01;
+	while (c.fsm.state != FSM_PLANNING)
+		frame();
+	frames(MANY); /* no answer: rings and a note */
+	ck_assert_int_gt(c.draw.item_count, 0);
+	shot();
+	ck_assert(c.draw.item_count == 0 && c.fsm.state == FSM_WATCHING);
+}
+END_TEST
+
 /* ---- commands ---------------------------------------------------------------------------------------------------- */
 
 START_TEST(pause_and_resume)
@@ -693,6 +960,8 @@ Suite *test_suite(void)
 	tcase_add_test(way, a_shot_takes_it_off_and_asks_anew);
 	tcase_add_test(way, motion_while_planning_cancels);
 	tcase_add_test(way, improved_answers_replace_repeated_ones_do_not);
+	tcase_add_test(way, a_proposal_changes_only_for_a_better_one);
+	tcase_add_test(way, a_proposal_is_shown_when_it_has_settled);
 	tcase_add_test(way, no_plan_is_said_on_the_table);
 	suite_add_tcase(suite, way);
 	TCase *faults = tcase_create("faults");
@@ -716,6 +985,23 @@ Suite *test_suite(void)
 	tcase_add_test(faults, overlaps_of_a_camera_are_settled_in_the_request);
 	tcase_add_test(faults, storms_are_survived_and_repeatable);
 	suite_add_tcase(suite, faults);
+	TCase *doubt = tcase_create("doubt and silence");
+	tcase_add_checked_fixture(doubt, setup, NULL);
+	tcase_set_timeout(doubt, 60);
+	tcase_add_test(doubt, one_ball_seen_twice_is_not_asked_for);
+	tcase_add_test(doubt, a_colour_seen_twice_is_not_asked_for_by_the_rules);
+	tcase_add_test(doubt, a_ball_in_the_jaws_is_asked_for_where_it_hangs);
+	tcase_add_test(doubt, a_nudge_of_more_than_half_a_millimetre_asks_anew);
+	tcase_add_test(doubt, a_ball_carried_300_mm);
+	tcase_add_test(doubt, a_drift_of_2_mm_s_takes_the_proposal_off);
+	tcase_add_test(doubt, an_arm_for_a_minute_is_told);
+	tcase_add_test(doubt, lights_off_and_on);
+	tcase_add_test(doubt, a_blinking_ball_is_told);
+	tcase_add_test(doubt, two_false_whites);
+	tcase_add_test(doubt, silence_of_vision_is_told_within_a_second);
+	tcase_add_test(doubt, silence_of_the_planner_is_told_within_a_second);
+	tcase_add_test(doubt, rings_go_when_a_ball_moves_while_planning);
+	suite_add_tcase(suite, doubt);
 	TCase *commands = tcase_create("commands");
 	tcase_add_checked_fixture(commands, setup, NULL);
 	tcase_add_test(commands, pause_and_resume);

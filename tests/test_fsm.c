@@ -1,11 +1,15 @@
 #include "app/control/fsm.h"
 
 #include <math.h>
+#include <stdio.h>
+#include <stdlib.h>
 #include <string.h>
 
 #include "harness.h"
 
 enum { CONTENT = FSM_DO_CLEAR | FSM_DO_SHOW | FSM_DO_NOTE };
+
+static const struct fsm_limits limits = {5, 60};
 
 static struct fsm at(enum fsm_state state)
 {
@@ -64,9 +68,9 @@ START_TEST(unwritten_cells_change_nothing)
 	{
 		struct fsm fsm = at(s);
 		unsigned actions = fsm_step(&fsm, e, 11);
-		if (fsm_written(s, e))
+		if (fsm.state != s)
 			ck_assert_double_eq(fsm.since, 11);
-		else
+		if (!fsm_written(s, e))
 			ck_assert(actions == 0 && fsm.state == s && fsm.since == 10);
 	}
 }
@@ -78,10 +82,10 @@ START_TEST(planning_is_entered_only_with_a_request)
 	{
 		enum fsm_state next;
 		unsigned actions = step(s, e, &next);
-		if (fsm_written(s, e) && next == FSM_PLANNING)
+		if (s != FSM_PLANNING && next == FSM_PLANNING)
 			ck_assert_msg(actions & (FSM_DO_REQUEST | FSM_DO_REPEAT), "%s, %s", fsm_state_name(s),
 				      fsm_event_name(e));
-		else
+		if (next != FSM_PLANNING)
 			ck_assert(!(actions & (FSM_DO_REQUEST | FSM_DO_REPEAT)));
 		if (actions & FSM_DO_REPEAT)
 			ck_assert_int_eq(s, FSM_PLANNING);
@@ -114,7 +118,7 @@ START_TEST(a_proposal_never_stays_on_a_table_that_changed)
 		if (s == FSM_SHOWING && next != FSM_SHOWING)
 			ck_assert(actions & FSM_DO_CLEAR);
 		if (next == FSM_SHOWING && fsm_written(s, e))
-			ck_assert(actions & (FSM_DO_SHOW | FSM_DO_NOTE));
+			ck_assert(actions & (FSM_DO_SHOW | FSM_DO_NOTE | FSM_DO_REDRAW));
 		if (actions & FSM_DO_SHOW)
 			ck_assert_int_eq(next, FSM_SHOWING);
 		/* At most one of showing and saying why not. */
@@ -125,12 +129,85 @@ END_TEST
 
 START_TEST(losing_the_table_is_always_said)
 {
-	for (enum fsm_state s = FSM_WATCHING; s < FSM_PAUSED; s++) {
+	for (enum fsm_state s = 0; s < FSM_PAUSED; s++) {
 		enum fsm_state next;
 		unsigned actions = step(s, FSM_LOST, &next);
 		ck_assert_int_eq(next, FSM_BLIND);
 		ck_assert(actions & FSM_DO_NOTE);
+		actions = step(s, FSM_SILENT, &next);
+		ck_assert_int_eq(next, FSM_BLIND);
+		ck_assert(actions & FSM_DO_NOTE);
 	}
+}
+END_TEST
+
+/* Whatever is on the table, light for balls that moved goes: in every state, on every way. */
+START_TEST(a_ball_that_moves_clears_the_picture_in_every_state)
+{
+	for (enum fsm_state s = 0; s < FSM_PAUSED; s++) {
+		enum fsm_state next;
+		unsigned actions = step(s, FSM_MOVING, &next);
+		ck_assert_msg(actions & FSM_DO_CLEAR, "%s", fsm_state_name(s));
+		ck_assert(next == FSM_SHOT || next == FSM_WATCHING);
+	}
+	/* Other balls than those asked for: what is drawn for them goes, too. */
+	for (enum fsm_state s = 0; s < FSM_PAUSED; s++) {
+		enum fsm_state next;
+		ck_assert(step(s, FSM_STABLE, &next) & FSM_DO_CLEAR);
+	}
+}
+END_TEST
+
+/* From every state there is a way out; by what can happen at the table alone, but for PAUSED. */
+START_TEST(no_state_is_without_a_way_out)
+{
+	for (enum fsm_state s = 0; s < FSM_STATE_COUNT; s++) {
+		int ways = 0;
+		for (enum fsm_event e = 0; e < FSM_EVENT_COUNT; e++) {
+			enum fsm_state next;
+			step(s, e, &next);
+			ways += next != s && (s == FSM_PAUSED || e < FSM_PAUSE);
+		}
+		ck_assert_msg(ways > 0, "%s", fsm_state_name(s));
+	}
+}
+END_TEST
+
+/* The drawing holds every written cell and nothing else. */
+START_TEST(the_drawing_is_the_table)
+{
+	char *text = NULL;
+	size_t size = 0;
+	FILE *out = open_memstream(&text, &size);
+	ck_assert_ptr_nonnull(out);
+	fsm_write_dot(out);
+	fclose(out);
+	int cells = 0, said = 0;
+	FOR_ALL_CELLS(s, e)
+	{
+		enum fsm_state next;
+		char arrow[64];
+		step(s, e, &next);
+		snprintf(arrow, sizeof arrow, "\t%s -> %s ", fsm_state_name(s), fsm_state_name(next));
+		if (!fsm_written(s, e))
+			continue;
+		cells++;
+		const char *line = strstr(text, arrow);
+		ck_assert_msg(line != NULL, "%s", arrow);
+		const char *name = strstr(line, fsm_event_name(e));
+		ck_assert_msg(name && name < strchr(line, '\n'), "%s %s", arrow, fsm_event_name(e));
+	}
+	for (const char *p = strstr(text, " / "); p; p = strstr(p + 1, " / "))
+		said++;
+	ck_assert_int_eq(said, cells);
+	/* docs/fsm.dot is this drawing (`build/billiard fsm --dot >docs/fsm.dot`). */
+	static char kept[16384];
+	FILE *file = fopen("docs/fsm.dot", "r");
+	ck_assert_ptr_nonnull(file);
+	kept[fread(kept, 1, sizeof kept - 1, file)] = 0;
+	fclose(file);
+	ck_assert_str_eq(kept, text);
+	free(text);
 }
 END_TEST
 
@@ -144,8 +221,8 @@ START_TEST(pause_holds_whatever_is_seen)
 	for (enum fsm_event e = 0; e < FSM_EVENT_COUNT; e++) {
 		enum fsm_state next;
 		unsigned actions = step(FSM_PAUSED, e, &next);
-		ck_assert_int_eq(next, e == FSM_RESUME ? FSM_BLIND : FSM_PAUSED);
-		ck_assert_uint_eq(actions, 0);
+		ck_assert_int_eq(next, e == FSM_RESUME || e == FSM_TOGGLE ? FSM_BLIND : FSM_PAUSED);
+		ck_assert_uint_eq(actions & ~(unsigned)(FSM_DO_CLEAR | FSM_DO_REDRAW | FSM_DO_FORGET), 0);
 	}
 }
 END_TEST
@@ -155,22 +232,22 @@ START_TEST(only_waiting_states_time_out)
 	FOR_ALL_CELLS(s, e)
 	{
 		struct fsm fsm = at(s);
-		double left = fsm_timeout(&fsm, 5, 12);
+		double left = fsm_timeout(&fsm, &limits, 12);
 		ck_assert_msg(fsm_written(s, FSM_TIMEOUT) == isfinite(left), "%s", fsm_state_name(s));
 		ck_assert_double_ge(left, 0);
 		if (e == FSM_TIMEOUT && fsm_written(s, e)) {
 			/* Never an event without end at one instant: the step restarts the timer. */
 			fsm_step(&fsm, FSM_TIMEOUT, 100);
-			ck_assert_double_gt(fsm_timeout(&fsm, 5, 100), 0);
+			ck_assert_double_gt(fsm_timeout(&fsm, &limits, 100), 0);
 		}
 	}
 	struct fsm fsm = at(FSM_PLANNING);
-	ck_assert_double_eq_tol(fsm_timeout(&fsm, 5, 12), 3, 1e-12);
-	ck_assert_double_eq(fsm_timeout(&fsm, 5, 1000), 0);
+	ck_assert_double_eq_tol(fsm_timeout(&fsm, &limits, 12), 3, 1e-12);
+	ck_assert_double_eq(fsm_timeout(&fsm, &limits, 1000), 0);
 	/* A shot that nobody saw come to rest: not while balls can still roll, but not for ever. */
 	fsm = at(FSM_SHOT);
-	ck_assert_double_gt(fsm_timeout(&fsm, 5, fsm.since + 45), 0);
-	ck_assert_double_eq(fsm_timeout(&fsm, 5, fsm.since + 90), 0);
+	ck_assert_double_gt(fsm_timeout(&fsm, &limits, fsm.since + 45), 0);
+	ck_assert_double_eq(fsm_timeout(&fsm, &limits, fsm.since + 90), 0);
 }
 END_TEST
 
@@ -218,6 +295,9 @@ Suite *test_suite(void)
 	tcase_add_test(table, planning_is_left_without_an_answer_only_with_a_cancel);
 	tcase_add_test(table, a_proposal_never_stays_on_a_table_that_changed);
 	tcase_add_test(table, losing_the_table_is_always_said);
+	tcase_add_test(table, a_ball_that_moves_clears_the_picture_in_every_state);
+	tcase_add_test(table, no_state_is_without_a_way_out);
+	tcase_add_test(table, the_drawing_is_the_table);
 	tcase_add_test(table, pause_holds_whatever_is_seen);
 	tcase_add_test(table, only_waiting_states_time_out);
 	tcase_add_test(table, random_sequences_keep_requests_and_cancels_paired);

@@ -56,7 +56,7 @@ static void write_conf(void)
 	snprintf(conf, sizeof conf, "%s", fixture_file("table.conf"));
 	snprintf(command, sizeof command,
 		 "sed -e 's#\"colours.json\"#\"%s/config/colours.json\"#' -e 's/time_scale = [0-9.]*/time_scale = 4/' "
-		 "-e 's/think_time = [0-9.]*/think_time = 3500/' -e 's/still_frames = [0-9]*/still_frames = 8/' "
+		 "-e 's/think_time = [0-9.]*/think_time = 3500/' -e 's/still_time = [0-9.]*/still_time = 400/' "
 		 "-e 's/budget_nodes = [0-9]*/budget_nodes = 2000/' -e 's/budget = [0-9.]*/budget = 0.0/' "
 		 "config/thesis-table.conf >%s",
 		 cwd, conf);

@@ -42,9 +42,9 @@ START_TEST(wrong_use_gives_one_line_and_status_2)
 	service_refused(program, (const char *[]){"-c", conf, "--bus", "udpm://999.1.1.1:7667", NULL}, "999.1.1.1");
 	snprintf(path, sizeof path, "%s", fixture_file("bad.conf"));
 	char command[400];
-	snprintf(command, sizeof command, "sed 's/still_frames = 5/still_frames = \"many\"/' %s >%s", conf, path);
+	snprintf(command, sizeof command, "sed 's/still_time = 250/still_time = \"many\"/' %s >%s", conf, path);
 	ck_assert_int_eq(system(command), 0);
-	service_refused(program, (const char *[]){"-c", path, NULL}, "still_frames");
+	service_refused(program, (const char *[]){"-c", path, NULL}, "still_time");
 }
 END_TEST
 

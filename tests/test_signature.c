@@ -422,7 +422,8 @@ END_TEST
 
 static void list_actions(unsigned actions, char text[VALUE_MAX])
 {
-	static const char *const names[] = {"clear", "request", "cancel", "show", "note", "next", "previous", "repeat"};
+	static const char *const names[] = {"clear", "request", "cancel", "show", "note", "next", "previous", "repeat",
+					    "redraw", "forget"};
 	ck_assert_uint_lt(actions, 1u << (sizeof names / sizeof *names));
 	text[0] = 0;
 	for (size_t i = 0; i < sizeof names / sizeof *names; i++)
@@ -438,7 +439,7 @@ START_TEST(transitions_of_the_controller)
 	for (int state = 0; state < FSM_STATE_COUNT; state++) {
 		struct fsm fsm = {.state = (enum fsm_state)state};
 		snprintf(name, sizeof name, "fsm.%s.timeout", fsm_state_name(fsm.state));
-		add(name, "%g s", fsm_timeout(&fsm, 3, 0));
+		add(name, "%g s", fsm_timeout(&fsm, &(struct fsm_limits){3, 60}, 0));
 		for (int event = 0; event < FSM_EVENT_COUNT; event++) {
 			fsm.state = (enum fsm_state)state;
 			if (!fsm_written(fsm.state, (enum fsm_event)event))

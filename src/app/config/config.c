@@ -75,6 +75,13 @@ static int finish_scheme(struct config_reader *reader, const config_t *settings,
 	return config_reader_fail(reader, setting_at(settings, "planner.scheme"), NULL, "batch, windows, queue, steal");
 }
 
+/* Frames in a row were counted before times were: at the 30 a second of a camera. */
+static void finish_stillness(struct config_file *file)
+{
+	if (file->still_frames > 0)
+		file->config.infinity.still_time = file->still_frames / 30;
+}
+
 static int finish_markers(struct config_reader *reader, const config_t *settings, const struct marker_layout *markers)
 {
 	for (int i = 0; i < markers->count; i++) {
@@ -121,6 +128,7 @@ static int finish(struct config_reader *reader, const config_t *settings, struct
 {
 	struct config *config = &file->config;
 	config->planner.memory = (size_t)file->memory_mib << 20;
+	finish_stillness(file);
 	int code = finish_table(reader, settings, file);
 	if (code == 0)
 		code = finish_model(reader, settings, config);

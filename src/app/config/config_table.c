@@ -227,7 +227,20 @@ static const struct config_key planner_keys[] = {
 
 static const struct config_key infinity_keys[] = {
 	NUMBER("still_distance", UNIT_MM, 0.01, 100, AT(config.infinity.still_distance)),
-	WHOLE("still_frames", UNIT_NONE, 1, 1000, AT(config.infinity.still_frames)),
+	NUMBER("still_time", UNIT_MS, 10, 60000, AT(config.infinity.still_time)),
+	NUMBER_OR(0, "still_frames", UNIT_NONE, 1, 1000, AT(still_frames)), /* older files; config.c turns it into still_time */
+	NUMBER("cue_distance", UNIT_MM, 1, 1000, AT(config.infinity.cue_distance)),
+	NUMBER("cue_time", UNIT_MS, 10, 60000, AT(config.infinity.cue_time)),
+	NUMBER("lost_time", UNIT_MS, 10, 60000, AT(config.infinity.lost_time)),
+	NUMBER("new_time", UNIT_MS, 10, 60000, AT(config.infinity.new_time)),
+	NUMBER("clear_time", UNIT_MS, 10, 60000, AT(config.infinity.clear_time)),
+	NUMBER("moving_time", UNIT_MS, 1, 1000, AT(config.infinity.moving_time)),
+	NUMBER("blind_time", UNIT_MS, 1, 10000, AT(config.infinity.blind_time)),
+	NUMBER("nudge_distance", UNIT_MM, 0.01, 100, AT(config.infinity.nudge_distance)),
+	NUMBER("tell_time", UNIT_MS, 100, 60000, AT(config.infinity.tell_time)),
+	NUMBER("silence_time", UNIT_MS, 100, 60000, AT(config.infinity.silence_time)),
+	NUMBER("show_time", UNIT_MS, 0, 10000, AT(config.infinity.show_time)),
+	NUMBER("better_margin", UNIT_NONE, 0, 10, AT(config.infinity.better_margin)),
 	FLAG("rules", AT(config.infinity.rules)),
 	NUMBER("plan_timeout", UNIT_MS, 10, 600000, AT(config.infinity.plan_timeout)),
 	NUMBER("animation_rate", UNIT_NONE, 0.01, 100, AT(config.infinity.animation_rate)),

@@ -13,6 +13,7 @@ struct config_file {
 	double topspin_speed; /* m/s, factor A of variant 1 */
 	double topspin_share; /* factor A of variant 2 */
 	int memory_mib;
+	double still_frames; /* older files: frames at 30 a second instead of still_time; 0: not there */
 };
 
 /* A whole file with every key that has no fallback of its own: the values of what another file leaves out. */

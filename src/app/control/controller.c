@@ -11,8 +11,22 @@
 #include "app/planner/plan_message.h"
 #include "vision/vision.h"
 
-static const double SETTLE_MAX = 0.006; /* m a ball may be moved to take camera errors out of a layout */
-static const double NEW_LAYOUT = 0.003; /* m a ball must lie elsewhere for a new proposal */
+/* What a camera's errors may do to a layout; more is no error but a wrong position. */
+static const double SHIFT_MAX = 0.006, OVERLAP_MAX = 0.005; /* m */
+static const double SHOT_TIME = 60; /* s after which a shot that nobody saw come to rest is given up */
+
+static struct stability_limits stability_limits_of(const struct config_infinity *c)
+{
+	return (struct stability_limits){.still_distance = c->still_distance,
+					 .cue_distance = c->cue_distance,
+					 .still_time = c->still_time,
+					 .cue_time = c->cue_time,
+					 .lost_time = c->lost_time,
+					 .new_time = c->new_time,
+					 .clear_time = c->clear_time,
+					 .moving_time = c->moving_time,
+					 .blind_time = c->blind_time};
+}
 
 void controller_init(struct controller *c, const struct config *config)
 {
@@ -22,8 +36,11 @@ void controller_init(struct controller *c, const struct config *config)
 		.options = draw_options_default(),
 		.animate = true,
 		.note = "waiting for the camera",
+		.last_arrival = -1,
+		.unsure_since = -1,
 	};
-	stability_init(&c->stability, config->infinity.still_distance, config->infinity.still_frames);
+	struct stability_limits limits = stability_limits_of(&config->infinity);
+	stability_init(&c->stability, &limits);
 	draw_clear(&c->draw);
 	c->output.draw = true;
 }
@@ -36,10 +53,13 @@ static void note(struct controller *c, const char *text)
 }
 
 /* Rings only where balls are known to rest. */
-static void draw_nothing(struct controller *c, bool with_note)
+static void draw_nothing(struct controller *c, const char *text)
 {
 	bool at_rest = c->fsm.state == FSM_PLANNING || c->fsm.state == FSM_SHOWING;
-	snprintf(c->drawn_note, sizeof c->drawn_note, "%s", with_note ? c->note : "");
+	bool empty = c->draw.plan_id == 0 && (text[0] || c->draw.item_count == 0);
+	if (!at_rest && empty && strcmp(c->drawn_note, text) == 0)
+		return;
+	snprintf(c->drawn_note, sizeof c->drawn_note, "%s", text);
 	draw_clear(&c->draw);
 	draw_idle(&c->draw, &c->config->table,
 		  &(struct draw_resting){c->seen.ball, at_rest ? c->seen.count : 0, c->drawn_note}, &c->options);
@@ -50,6 +70,7 @@ static void draw_nothing(struct controller *c, bool with_note)
 
 static void draw_shown(struct controller *c)
 {
+	c->drawn_note[0] = '\0';
 	draw_clear(&c->draw);
 	draw_proposal(&c->draw, &c->config->table, &(struct draw_subject){&c->plan, c->entry, c->shot}, &c->options);
 	c->draw.plan_id = c->plan.request_id;
@@ -88,22 +109,34 @@ static struct rules_state ball_on(const struct controller *c)
 	return state;
 }
 
-static void request(struct controller *c)
+static void name_balls(billiard_plan_request_t *r, const struct layout *layout)
+{
+	char name[16];
+	int number[COLOUR_COUNT] = {0};
+	for (int i = 0; i < layout->count; i++) {
+		enum ball_colour colour = layout->ball[i].colour;
+		snprintf(name, sizeof name, "%s%d", ball_colour_name(colour), number[colour]++);
+		ball_to_message(&r->balls[i], &layout->ball[i], name, layout->track[i]);
+	}
+}
+
+static void request(struct controller *c, double now)
 {
 	const struct config_planner *p = &c->config->planner;
 	bool rules = c->config->infinity.rules;
 	if (rules)
 		c->rules = ball_on(c);
 	c->asked = c->seen;
+	c->asked_at = now;
 	c->has_asked = true;
-	c->has_plan = c->was_cancelled = false;
+	c->has_plan = c->has_offer = c->has_none = c->was_cancelled = false;
 	c->entry = c->shot = 0;
 	billiard_plan_request_t *r = &c->request;
 	/* The frame's time as id: larger than all former ones, also after a restart, and the same in a replay. */
 	int64_t id = c->last_frame > c->request.id ? c->last_frame : c->request.id + 1;
 	*r = (billiard_plan_request_t){
 		.id = id,
-		.ball_count = c->seen.count,
+		.ball_count = c->settled.count,
 		.target_kind = rules ? TARGET_RULES : TARGET_ANY,
 		.on = rules ? (int8_t)c->rules.on : ON_ANY,
 		.in_hand = c->rules.in_hand,
@@ -115,25 +148,15 @@ static void request(struct controller *c)
 		.budget_nodes = (int64_t)p->budget_nodes,
 		.budget_s = p->budget,
 	};
-	struct layout settled = c->seen;
-	if (!layout_settle(&settled, c->config->table.length, c->config->table.width, c->config->table.ball_radius,
-			   SETTLE_MAX))
-		note(c, "balls seem to overlap");
-	char name[16];
-	int number[COLOUR_COUNT] = {0};
-	for (int i = 0; i < settled.count; i++) {
-		enum ball_colour colour = settled.ball[i].colour;
-		snprintf(name, sizeof name, "%s%d", ball_colour_name(colour), number[colour]++);
-		ball_to_message(&r->balls[i], &settled.ball[i], name, settled.track[i]);
-	}
+	name_balls(r, &c->settled);
 	c->output.request = true;
 }
 
 /* The planner lost the request, or somebody else had it ended: then it knows the id as done, and only a new one helps. */
-static void repeat(struct controller *c)
+static void repeat(struct controller *c, double now)
 {
 	if (c->was_cancelled)
-		request(c);
+		request(c, now);
 	else
 		c->output.request = true;
 }
@@ -143,33 +166,64 @@ static int wrap(int value, int count)
 	return count > 0 ? (value % count + count) % count : 0;
 }
 
-static void perform(struct controller *c, unsigned actions, double now)
+static void show(struct controller *c, double now)
+{
+	if (!c->has_plan) {
+		draw_nothing(c, c->none_reason);
+		return;
+	}
+	draw_shown(c);
+	animate_shown(c, now);
+}
+
+static void redraw(struct controller *c)
+{
+	char text[CONTROLLER_NOTE_SIZE];
+	memcpy(text, c->drawn_note, sizeof text);
+	if (c->draw.plan_id) {
+		draw_shown(c);
+		return;
+	}
+	c->draw.item_count = 1; /* what is there is to look otherwise: never the same */
+	c->drawn_note[0] = '\0';
+	draw_nothing(c, text);
+}
+
+static void perform_asking(struct controller *c, unsigned actions, double now)
 {
 	if (actions & FSM_DO_CANCEL) {
 		c->output.cancel = true;
 		c->output.cancel_id = c->request.id;
 	}
 	if (actions & FSM_DO_CLEAR)
-		draw_nothing(c, false);
+		draw_nothing(c, "");
+	if (actions & FSM_DO_FORGET)
+		c->has_plan = c->has_offer = c->has_none = false;
 	if (actions & FSM_DO_REQUEST)
-		request(c);
+		request(c, now);
 	if (actions & FSM_DO_REPEAT)
-		repeat(c);
+		repeat(c, now);
+}
+
+static void perform_showing(struct controller *c, unsigned actions, double now)
+{
 	if (actions & FSM_DO_NEXT)
 		c->entry = wrap(c->entry + 1, c->plan.entry_count);
 	if (actions & FSM_DO_PREVIOUS)
 		c->entry = wrap(c->entry - 1, c->plan.entry_count);
-	if ((actions & FSM_DO_SHOW) && c->has_plan) {
-		draw_shown(c);
-		animate_shown(c, now);
-	}
+	if (actions & FSM_DO_SHOW)
+		show(c, now);
 	if (actions & FSM_DO_NOTE)
-		draw_nothing(c, true);
+		draw_nothing(c, c->note);
+	if (actions & FSM_DO_REDRAW)
+		redraw(c);
 }
 
 static void event(struct controller *c, enum fsm_event e, double now)
 {
-	perform(c, fsm_step(&c->fsm, e, now), now);
+	unsigned actions = fsm_step(&c->fsm, e, now);
+	perform_asking(c, actions, now);
+	perform_showing(c, actions, now);
 }
 
 /* ---- what is seen --------------------------------------------------------------------------------------------------- */
@@ -201,57 +255,186 @@ static void drop_false_whites(struct layout *layout)
 	layout->count = n;
 }
 
-static void on_verdict(struct controller *c, enum stability_verdict verdict, double now)
-{
-	enum fsm_state s = c->fsm.state;
-	switch (verdict) {
-	case STABILITY_LOST:
-		event(c, FSM_LOST, now);
-		break;
-	case STABILITY_MOVING:
-		event(c, FSM_MOVING, now);
-		break;
-	case STABILITY_STABLE:
-		/* While a proposal is up, only another layout counts: a hand that passed changes nothing. */
-		if ((s != FSM_PLANNING && s != FSM_SHOWING) || !c->has_asked ||
-		    layout_differs(&c->asked, &c->seen, NEW_LAYOUT))
-			event(c, FSM_STABLE, now);
-		break;
-	case STABILITY_UNSURE:
-		break;
-	}
-}
-
 void controller_doubt(struct controller *c, const billiard_vision_doubt_t *doubt)
 {
 	c->doubt = *doubt;
 }
 
 /* A colour matters when the rules are played, and the cue ball's always. */
-static bool colour_matters(const struct controller *c, const billiard_table_state_t *state)
+static bool ball_is_doubted(const struct controller *c, const struct layout *layout, int i)
 {
-	bool matters = c->config->infinity.rules;
-	for (int i = 0; i < state->ball_count && i < c->doubt.ball_count; i++)
-		matters =
-			matters || ((c->doubt.ball_doubt[i] & DOUBT_COLOUR) && state->balls[i].colour == COLOUR_WHITE);
-	return matters;
+	int doubt = c->doubt.ball_doubt[i];
+	bool colour = c->config->infinity.rules || layout->ball[i].colour == COLOUR_WHITE;
+	return (doubt & (DOUBT_PLACE | DOUBT_HIDDEN)) || ((doubt & DOUBT_COLOUR) && colour);
 }
 
-/* Why the position is not to be planned for although nothing moves; NULL: no reason. A vision that tells its doubts tells
- * them for every frame: where they are missing they were lost. */
-static const char *doubted(const struct controller *c, const billiard_table_state_t *state)
+/* A vision that tells its doubts tells them for every frame: where they are missing they were lost. */
+static struct stability_view view_of(const struct controller *c, const billiard_table_state_t *state,
+				     const struct layout *layout)
 {
+	struct stability_view view = {
+		.time = 1e-6 * (double)state->utime, .occluded = state->occluded != 0, .doubted = -1};
 	if (c->doubt.utime == 0)
-		return NULL;
-	if (c->doubt.utime != state->utime || (c->doubt.doubt & DOUBT_UNJUDGED))
-		return "looking again";
-	if (c->doubt.doubt & DOUBT_PLACE)
-		return "a ball is not seen clearly";
-	if (c->doubt.doubt & DOUBT_HIDDEN)
-		return "a ball is hidden";
-	if ((c->doubt.doubt & DOUBT_COLOUR) && colour_matters(c, state))
-		return "a ball's colour is not sure";
-	return NULL;
+		return view;
+	view.looking = c->doubt.utime != state->utime || (c->doubt.doubt & DOUBT_UNJUDGED) ||
+		       c->doubt.ball_count != layout->count;
+	for (int i = 0; i < layout->count && !view.looking && view.doubted < 0; i++)
+		if (ball_is_doubted(c, layout, i))
+			view.doubted = i;
+	return view;
+}
+
+static void say(struct controller *c, const char *text)
+{
+	snprintf(c->word, sizeof c->word, "%s", text);
+}
+
+/* "RED at (300, 200): hidden", mm. */
+static void say_of_ball(struct controller *c, const struct ball *ball, const char *what)
+{
+	snprintf(c->word, sizeof c->word, "%s at (%.0f, %.0f): %s", ball_colour_name(ball->colour), 1e3 * ball->pos.x,
+		 1e3 * ball->pos.y, what);
+}
+
+static void say_what_is_not_clear(struct controller *c, const struct layout *layout, const struct stability_view *view)
+{
+	if (view->occluded)
+		say(c, "something is over the table");
+	else if (view->doubted < 0)
+		say(c, "looking again");
+	else if (c->doubt.ball_doubt[view->doubted] & DOUBT_HIDDEN)
+		say_of_ball(c, &layout->ball[view->doubted], "hidden");
+	else if (c->doubt.ball_doubt[view->doubted] & DOUBT_PLACE)
+		say_of_ball(c, &layout->ball[view->doubted], "not seen clearly");
+	else
+		say_of_ball(c, &layout->ball[view->doubted], "which colour?");
+}
+
+/* Why the table is not taken for still, in a word. */
+static void say_obstacle(struct controller *c, const struct layout *layout, const struct stability_view *view)
+{
+	enum stability_condition obstacle = stability_obstacle(&c->stability);
+	int ball = obstacle < STABILITY_ALL ? c->stability.result[obstacle].ball : -1;
+	switch (obstacle) {
+	case STABILITY_CUE:
+		say(c, view->occluded ? "something is over the table" : "which white ball is the cue ball?");
+		break;
+	case STABILITY_STILL:
+		if (ball >= 0)
+			say_of_ball(c, &layout->ball[ball], "moves");
+		else
+			say(c, "waiting for rest");
+		break;
+	case STABILITY_KEPT:
+		say(c, "a ball comes and goes");
+		break;
+	case STABILITY_NONE_NEW:
+		say(c, "a ball comes and goes");
+		break;
+	case STABILITY_CLEAR:
+		say_what_is_not_clear(c, layout, view);
+		break;
+	case STABILITY_ALL:
+	case STABILITY_CONDITIONS:
+		break;
+	}
+}
+
+static void say_blindness(struct controller *c, const billiard_table_state_t *state)
+{
+	char reason[sizeof state->reason];
+	text_get(reason, sizeof reason, state->reason, sizeof state->reason);
+	if (state->calibration != 0)
+		say(c, "no cue ball");
+	else
+		snprintf(c->word, sizeof c->word, "not calibrated: %.70s", reason);
+}
+
+/* White and the six colours are there once each; by the rules that matters. */
+static int second_of_its_colour(const struct controller *c, const struct layout *layout)
+{
+	int count[COLOUR_COUNT] = {0};
+	for (int i = 0; i < layout->count && c->config->infinity.rules; i++) {
+		enum ball_colour colour = layout->ball[i].colour;
+		if (++count[colour] > 1 && colour != COLOUR_RED)
+			return i;
+	}
+	return -1;
+}
+
+/* Whether balls can lie as they are seen. What cannot be settled is no position. */
+static bool holds_together(struct controller *c)
+{
+	int culprit = second_of_its_colour(c, &c->seen);
+	if (culprit >= 0) {
+		say_of_ball(c, &c->seen.ball[culprit], "seen twice");
+		return false;
+	}
+	const struct layout_limits limits = {SHIFT_MAX, OVERLAP_MAX, c->config->model.pocket == POCKET_MODEL_JAWS};
+	c->settled = c->seen;
+	if (layout_settle(&c->settled, &c->config->table, &limits, &culprit))
+		return true;
+	say_of_ball(c, &c->seen.ball[culprit], "cannot lie there");
+	return false;
+}
+
+static void report(struct controller *c, enum stability_verdict verdict, const struct layout *layout)
+{
+	billiard_stability_t *r = &c->report;
+	*r = (billiard_stability_t){.utime = c->last_frame, .verdict = (int8_t)verdict};
+	if (verdict != STABILITY_STABLE)
+		text_set(r->word, sizeof r->word, c->word);
+	for (int i = 0; i < STABILITY_CONDITIONS; i++) {
+		const struct stability_result *from = &c->stability.result[i];
+		const struct layout *of = i == STABILITY_KEPT ? &c->stability.anchor : layout;
+		r->conditions[i] = (billiard_stability_condition_t){
+			.holds = from->holds,
+			.value = from->value,
+			.limit = from->limit,
+			.held = from->held,
+			.needed = from->needed,
+			.track = from->ball >= 0 && from->ball < of->count ? of->track[from->ball] : 0,
+		};
+	}
+	c->output.stability = true;
+}
+
+/* What was asked for, or has an answer, lies there still: a hand that passed changes nothing. */
+static bool is_known(const struct controller *c)
+{
+	bool kept = c->has_plan || c->has_none || c->fsm.state == FSM_PLANNING;
+	return c->has_asked && kept && !layout_differs(&c->asked, &c->seen, c->config->infinity.nudge_distance);
+}
+
+static void on_unsure(struct controller *c, double now)
+{
+	if (c->unsure_since < 0)
+		c->unsure_since = now;
+	if (now - c->unsure_since < c->config->infinity.tell_time)
+		return;
+	note(c, c->word);
+	event(c, FSM_DOUBT, now);
+}
+
+static void on_verdict(struct controller *c, enum stability_verdict verdict, double now)
+{
+	if (verdict != STABILITY_UNSURE)
+		c->unsure_since = -1;
+	switch (verdict) {
+	case STABILITY_LOST:
+		note(c, c->word);
+		event(c, FSM_LOST, now);
+		break;
+	case STABILITY_MOVING:
+		event(c, FSM_MOVING, now);
+		break;
+	case STABILITY_STABLE:
+		event(c, is_known(c) ? FSM_SAME : FSM_STABLE, now);
+		break;
+	case STABILITY_UNSURE:
+		on_unsure(c, now);
+		break;
+	}
 }
 
 bool controller_state(struct controller *c, const billiard_table_state_t *state, double now)
@@ -262,30 +445,73 @@ bool controller_state(struct controller *c, const billiard_table_state_t *state,
 		return false;
 	layout_from_message(&layout, state);
 	c->last_frame = state->utime;
+	c->last_arrival = now;
+	struct stability_view view = view_of(c, state, &layout);
 	bool seen = state->calibration != 0;
-	enum stability_verdict verdict = stability_frame(&c->stability, seen ? &layout : NULL, state->occluded != 0);
-	const char *doubt = verdict == STABILITY_STABLE ? doubted(c, state) : NULL;
-	if (doubt) {
-		verdict = STABILITY_UNSURE;
-		note(c, doubt);
-	}
-	if (!seen) {
-		char reason[sizeof state->reason];
-		text_get(reason, sizeof reason, state->reason, sizeof state->reason);
-		snprintf(c->note, sizeof c->note, "not calibrated: %.70s", reason);
-	} else if (layout.cue < 0) {
-		note(c, "no cue ball");
-	} else {
+	enum stability_verdict verdict = stability_frame(&c->stability, seen ? &layout : NULL, &view);
+	if (verdict == STABILITY_LOST)
+		say_blindness(c, state);
+	else
+		say_obstacle(c, &layout, &view);
+	report(c, verdict, &layout);
+	if (seen && layout.cue >= 0) {
 		drop_false_whites(&layout);
 		c->seen = layout;
 	}
+	if (verdict == STABILITY_STABLE && !holds_together(c)) {
+		verdict = STABILITY_UNSURE;
+		c->report.verdict = (int8_t)verdict;
+		text_set(c->report.word, sizeof c->report.word, c->word);
+	}
 	on_verdict(c, verdict, now);
-	if (verdict == STABILITY_LOST && c->fsm.state == FSM_BLIND && strcmp(c->note, c->drawn_note) != 0)
-		draw_nothing(c, true);
 	return true;
 }
 
 /* ---- answers and commands ------------------------------------------------------------------------------------------- */
+
+static bool same_first_shot(const billiard_plan_t *a, const billiard_plan_t *b)
+{
+	const billiard_plan_shot_t *s = &a->entries[0].shots[0], *t = &b->entries[0].shots[0];
+	return s->angle == t->angle && s->speed == t->speed && s->side == t->side && s->follow == t->follow &&
+	       s->elevation == t->elevation && s->target == t->target && s->pocket == t->pocket;
+}
+
+/* What is drawn stays: it makes way for the same shot with more to it, or for one that is better by a margin, and for neither once the
+ * player looks at another proposal. */
+static bool makes_way(const struct controller *c)
+{
+	if (!c->has_plan)
+		return true;
+	if (c->entry != 0)
+		return false;
+	double now = c->plan.entries[0].cost, then = c->offered.entries[0].cost;
+	return same_first_shot(&c->plan, &c->offered) || then < now - c->config->infinity.better_margin * fabs(now);
+}
+
+/* A proposal is shown when it is final or has not changed for a while. */
+static void settle_offer(struct controller *c, double now)
+{
+	if (!c->has_offer || !(c->offered.is_final || now - c->offered_since >= c->config->infinity.show_time))
+		return;
+	c->has_offer = false;
+	if (!makes_way(c))
+		return;
+	c->proposals += !c->has_plan;
+	c->plan = c->offered;
+	c->has_plan = true;
+	c->shot = 0;
+	event(c, FSM_READY, now);
+}
+
+static void take_refusal(struct controller *c, const billiard_plan_t *plan, double now)
+{
+	if (!plan->is_final || c->has_plan || c->has_offer)
+		return;
+	text_get(c->none_reason, sizeof c->none_reason, plan->reason, sizeof plan->reason);
+	note(c, c->none_reason);
+	c->has_none = true;
+	event(c, FSM_NONE, now);
+}
 
 bool controller_plan(struct controller *c, const billiard_plan_t *plan, double now)
 {
@@ -296,29 +522,25 @@ bool controller_plan(struct controller *c, const billiard_plan_t *plan, double n
 	if (c->was_cancelled || !wanted)
 		return true;
 	if (plan->status != PLAN_MESSAGE_OK) {
-		text_get(c->note, sizeof c->note, plan->reason, sizeof plan->reason);
-		if (plan->is_final && !c->has_plan)
-			event(c, FSM_NONE, now);
+		take_refusal(c, plan, now);
 		return true;
 	}
-	if (c->has_plan && plan->sequence < c->plan.sequence)
+	bool first = !c->has_plan && !c->has_offer;
+	if (!first && plan->sequence < c->sequence)
 		return true;
-	c->proposals += !c->has_plan;
-	c->plan = *plan;
-	c->has_plan = true;
-	c->entry = wrap(c->entry, plan->entry_count);
-	c->shot = 0;
-	event(c, FSM_READY, now);
+	if (!c->has_offer || !same_first_shot(&c->offered, plan))
+		c->offered_since = now;
+	c->sequence = plan->sequence;
+	c->offered = *plan;
+	c->has_offer = true;
+	settle_offer(c, now);
 	return true;
 }
 
-static bool toggle(struct controller *c, bool *what)
+static bool toggle(struct controller *c, bool *what, double now)
 {
 	*what = !*what;
-	if (c->fsm.state == FSM_SHOWING && c->has_plan)
-		draw_shown(c);
-	else
-		draw_nothing(c, c->fsm.state == FSM_BLIND || c->fsm.state == FSM_SHOWING);
+	event(c, FSM_REDRAW, now);
 	return true;
 }
 
@@ -366,31 +588,56 @@ bool controller_command(struct controller *c, const billiard_command_t *command,
 	static const struct {
 		const char *name;
 		enum fsm_event event;
-	} events[] = {{"pause", FSM_PAUSE}, {"resume", FSM_RESUME}, {"next", FSM_NEXT}, {"previous", FSM_PREVIOUS}};
+	} events[] = {{"pause", FSM_PAUSE},
+		      {"resume", FSM_RESUME},
+		      {"infinity", FSM_TOGGLE},
+		      {"next", FSM_NEXT},
+		      {"previous", FSM_PREVIOUS}};
 	for (size_t i = 0; i < sizeof events / sizeof events[0]; i++) {
 		if (strcmp(name, events[i].name) == 0) {
 			event(c, events[i].event, now);
 			return true;
 		}
 	}
-	if (strcmp(name, "infinity") == 0) {
-		event(c, c->fsm.state == FSM_PAUSED ? FSM_RESUME : FSM_PAUSE, now);
-		return true;
-	}
 	if (strcmp(name, "halo") == 0)
-		return toggle(c, &c->options.halo);
+		return toggle(c, &c->options.halo, now);
 	if (strcmp(name, "paths") == 0)
-		return toggle(c, &c->options.other_paths);
+		return toggle(c, &c->options.other_paths, now);
 	if (strcmp(name, "table") == 0)
-		return toggle(c, &c->options.table);
+		return toggle(c, &c->options.table, now);
 	if (strcmp(name, "info") == 0)
-		return toggle(c, &c->options.info);
+		return toggle(c, &c->options.info, now);
 	/* What is not known here may be another program's. */
 	return strncmp(name, "animation", 9) != 0 || animation_control(c, name, argument, now);
 }
 
+/* Nobody sees the table any more: what is on it may be true no longer. */
+static void hear_silence(struct controller *c, double now)
+{
+	if (c->last_arrival < 0)
+		c->last_arrival = now;
+	if (now - c->last_arrival < c->config->infinity.silence_time)
+		return;
+	note(c, "no pictures: billiard-vision is silent");
+	event(c, FSM_SILENT, now);
+}
+
+static void miss_answer(struct controller *c, double now)
+{
+	if (c->fsm.state != FSM_PLANNING || c->has_offer || now - c->asked_at < c->config->infinity.silence_time)
+		return;
+	note(c, "no answer from the planner yet");
+	if (strcmp(c->note, c->drawn_note) != 0)
+		event(c, FSM_LATE, now);
+}
+
 void controller_tick(struct controller *c, double now)
 {
-	if (fsm_timeout(&c->fsm, c->config->infinity.plan_timeout, now) <= 0)
+	const struct fsm_limits limits = {c->config->infinity.plan_timeout, SHOT_TIME};
+	hear_silence(c, now);
+	miss_answer(c, now);
+	if (c->fsm.state == FSM_PLANNING || c->fsm.state == FSM_SHOWING)
+		settle_offer(c, now);
+	if (fsm_timeout(&c->fsm, &limits, now) <= 0)
 		event(c, FSM_TIMEOUT, now);
 }

@@ -8,6 +8,7 @@
 #include "lcmtypes/billiard_image_t.h"
 #include "lcmtypes/billiard_plan_request_t.h"
 #include "lcmtypes/billiard_plan_t.h"
+#include "lcmtypes/billiard_stability_t.h"
 #include "lcmtypes/billiard_status_t.h"
 #include "lcmtypes/billiard_table_state_t.h"
 #include "lcmtypes/billiard_vision_doubt_t.h"
@@ -81,6 +82,21 @@ static const struct message_member vision_doubt[] = {
 	MANY(billiard_vision_doubt_t, certainty, "ball_count", 0.0, 1.0),
 };
 const struct message_table message_vision_doubt = TABLE(vision_doubt);
+
+static const struct message_member stability_condition[] = {
+	ONE(billiard_stability_condition_t, value, ANY),
+	ONE(billiard_stability_condition_t, limit, ANY),
+	ONE(billiard_stability_condition_t, held, FROM(0.0)),
+	ONE(billiard_stability_condition_t, needed, FROM(0.0)),
+};
+static const struct message_table stability_conditions = TABLE(stability_condition);
+
+static const struct message_member stability[] = {
+	ONE(billiard_stability_t, utime, UTIME),
+	ONE(billiard_stability_t, verdict, 0.0, 3.0),
+	PARTS(billiard_stability_t, conditions, NULL, stability_conditions),
+};
+const struct message_table message_stability = TABLE(stability);
 
 static const struct message_member image[] = {
 	ONE(billiard_image_t, utime, UTIME),

@@ -7,7 +7,7 @@
 #include "app/control/controller.h"
 #include "app/process/process.h"
 
-enum { TICK_US = 100000, REPEAT_US = 1000000 };
+enum { TICK_US = 50000, REPEAT_US = 1000000 };
 
 struct infinity {
 	struct process process;
@@ -55,6 +55,8 @@ static void flush(struct infinity *p)
 		p->controller.request.utime = clock_utime();
 		bus_publish(p->process.bus, "PLAN_REQUEST", &bus_plan_request, &p->controller.request);
 	}
+	if (out.stability)
+		bus_publish(p->process.bus, "STABILITY", &bus_stability, &p->controller.report);
 	if (out.draw)
 		send_draw(p);
 	if (out.animation) {
