@@ -44,7 +44,7 @@ PROGRAMS := billiard billiard-vision billiard-planner billiard-infinity billiard
 TESTS := signature message_check animation fsm stability plan_message controller planner_service planner_bus bus process supervisor frame_source services loop replay \
 	config position save options cmd status plot draw render player table_camera contact_real contact_recorded shot_file \
 	rules cost geometry frontier pool scheme candidate plan plan_thesis plan_hard plan_complete tolerance refine solutions request \
-	ball bed cluster contact predict event inverse model motion queue roots sim sim_hard table trace \
+	ball bed cluster known contact predict event inverse model motion queue roots sim sim_hard table trace \
 	calibration camera pose scan fit colour stabilise image_io capture stages track vision vision_photos
 TESTS += rules_official match
 TESTS += seeing

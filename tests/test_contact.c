@@ -119,6 +119,31 @@ START_TEST(thesis_topspin_variants)
 }
 END_TEST
 
+/* What topspin may add: 1.24-fold on a ball at rest, 1.41-fold of two that both roll (docs/physics.md). */
+START_TEST(thesis_topspin_gains_so_much)
+{
+	struct table table = scene_thesis_table();
+	struct model model = model_named("thesis");
+	struct random r = random_begin("thesis_topspin_gains_so_much");
+	double most[2] = {0, 0};
+	for (int i = 0; i < 400000; i++) {
+		struct ball a = moving((vec2){0, 0}, vec2_from_angle(random_in(&r, -M_PI, M_PI)), BALL_ROLLING, &table);
+		struct ball b = ball_at(COLOUR_RED, (vec2){2 * table.ball_radius, 0});
+		if (i & 1)
+			b = moving(b.pos, vec2_scale(vec2_from_angle(random_in(&r, -M_PI, M_PI)), random_in(&r, 0, 2)),
+				   BALL_ROLLING, &table);
+		if (a.vel.x - b.vel.x <= 0)
+			continue;
+		double before = vec2_norm2(a.vel) + vec2_norm2(b.vel);
+		contact_balls(&table, &model, &a, &b);
+		most[i & 1] = fmax(most[i & 1], (vec2_norm2(a.vel) + vec2_norm2(b.vel)) / before);
+	}
+	ck_assert_double_eq_tol(most[0], 1.241, 2e-3);
+	ck_assert_double_le(most[1], 1.411);
+	ck_assert_double_ge(most[1], 1.38);
+}
+END_TEST
+
 START_TEST(cushions_mirror)
 {
 	struct table table = scene_thesis_table();
@@ -352,6 +377,7 @@ Suite *test_suite(void)
 	tcase_add_test(tcase, simple_keeps_momentum_and_separates);
 	tcase_add_test(tcase, thesis_without_topspin);
 	tcase_add_test(tcase, thesis_topspin_variants);
+	tcase_add_test(tcase, thesis_topspin_gains_so_much);
 	tcase_add_test(tcase, cushions_mirror);
 	tcase_add_test(tcase, restitution_falls_with_speed);
 	tcase_add_test(tcase, a_cushion_of_its_own);
