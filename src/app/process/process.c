@@ -1,174 +1,17 @@
 #include "app/process/process.h"
 
 #include <errno.h>
-#include <getopt.h>
-#include <math.h>
 #include <signal.h>
-#include <stdarg.h>
-#include <stdlib.h>
 #include <stdio.h>
+#include <stdlib.h>
 #include <string.h>
 #include <systemd/sd-daemon.h>
 #include <unistd.h>
 
-#include "app/process/text.h"
 #include "app/process/clock.h"
-#include "app/process/version.h"
+#include "app/process/text.h"
 
 enum { STATUS_PERIOD_US = 1000000 };
-
-/* ---- command line --------------------------------------------------------------------------------------------------- */
-
-/* The options of one program: those it alone has, then those that all have. */
-struct option_set {
-	const char *program, *usage;
-	struct option options[8];
-};
-enum { OPT_BUS = 256, OPT_SOURCE, OPT_HOLD, OPT_POSITION };
-#define COMMON_OPTIONS                                                                                                 \
-	{"config", required_argument, NULL, 'c'}, {"bus", required_argument, NULL, OPT_BUS},                           \
-		{"help", no_argument, NULL, 'h'}, {"version", no_argument, NULL, 'v'},                                 \
-	{                                                                                                              \
-		NULL, 0, NULL, 0                                                                                       \
-	}
-
-static const struct option_set option_sets[] = {
-	{"billiard-vision",
-	 " [--source v4l2:/dev/videoN|dir:FOLDER|file:VIDEO|lcm:CHANNEL] [--hold SECONDS]",
-	 {{"source", required_argument, NULL, OPT_SOURCE},
-	  {"hold", required_argument, NULL, OPT_HOLD},
-	  COMMON_OPTIONS}},
-	{"billiard-table", " [--position FILE]", {{"position", required_argument, NULL, OPT_POSITION}, COMMON_OPTIONS}},
-	{"", "", {COMMON_OPTIONS}},
-};
-
-static const struct option_set *options_of(const char *program)
-{
-	const struct option_set *set = option_sets;
-	while (set->program[0] && strcmp(set->program, program) != 0)
-		set++;
-	return set;
-}
-
-static int parse_hold(const char *text, double *out)
-{
-	char *rest;
-	double value = strtod(text, &rest);
-	if (rest == text || *rest || !(value > 0 && value <= 3600)) {
-		fprintf(stderr, "billiard-vision: --hold: found \"%s\", allowed seconds in 0..3600\n", text);
-		return -EINVAL;
-	}
-	*out = value;
-	return 0;
-}
-
-int process_parse(struct process_options *out, const char *name, int argc, char **argv)
-{
-	const struct option_set *set = options_of(name);
-	*out = (struct process_options){.config = config_default_path(), .hold = 4};
-	int c;
-	while ((c = getopt_long(argc, argv, "c:h", set->options, NULL)) != -1) {
-		switch (c) {
-		case 'c':
-			out->config = optarg;
-			break;
-		case OPT_BUS:
-			out->bus = optarg;
-			break;
-		case OPT_SOURCE:
-			out->source = optarg;
-			break;
-		case OPT_POSITION:
-			out->position = optarg;
-			break;
-		case OPT_HOLD:
-			if (parse_hold(optarg, &out->hold) < 0)
-				return -EINVAL;
-			break;
-		case 'h':
-			printf("usage: %s [-c CONF] [--bus URL]%s\n", name, set->usage);
-			return 1;
-		case 'v':
-			printf("%s %s\n", name, BILLIARD_VERSION);
-			return 1;
-		default:
-			return -EINVAL;
-		}
-	}
-	if (optind < argc) {
-		fprintf(stderr, "%s: unexpected argument \"%s\"\n", name, argv[optind]);
-		return -EINVAL;
-	}
-	return 0;
-}
-
-/* ---- status --------------------------------------------------------------------------------------------------------- */
-
-static void publish_status(struct process *process)
-{
-	if (process->describe)
-		process->describe(process->context, process);
-	/* Here and not for each message: a flood of bad ones must not flood the journal. */
-	if (bus_ignored(process->bus) > process->ignored_logged) {
-		process->ignored_logged = bus_ignored(process->bus);
-		process_error(process, "ignored %s", bus_last_ignored(process->bus));
-	}
-	process->status.utime = clock_utime();
-	process->status.received = bus_received(process->bus);
-	process->status.ignored = bus_ignored(process->bus);
-	bus_publish(process->bus, "STATUS", &bus_status, &process->status);
-}
-
-void process_state(struct process *process, const char *format, ...)
-{
-	uint8_t before[sizeof process->status.state];
-	char text[sizeof before];
-	va_list args;
-	va_start(args, format);
-	vsnprintf(text, sizeof text, format, args);
-	va_end(args);
-	memcpy(before, process->status.state, sizeof before);
-	text_set(process->status.state, sizeof process->status.state, text);
-	if (memcmp(before, process->status.state, sizeof before) != 0) {
-		void (*describe)(void *, struct process *) = process->describe;
-		process->describe = NULL; /* it may call process_state() itself */
-		publish_status(process);
-		process->describe = describe;
-	}
-}
-
-void process_error(struct process *process, const char *format, ...)
-{
-	uint8_t before[sizeof process->status.error];
-	char text[sizeof before];
-	va_list args;
-	va_start(args, format);
-	vsnprintf(text, sizeof text, format, args);
-	va_end(args);
-	memcpy(before, process->status.error, sizeof before);
-	text_set(process->status.error, sizeof process->status.error, text);
-	process->status.error_utime = clock_utime();
-	if (memcmp(before, process->status.error, sizeof before) != 0)
-		fprintf(stderr, "%s: %s\n", process->name, text);
-}
-
-void process_metric(struct process *process, const char *name, const char *unit, double value)
-{
-	billiard_status_t *s = &process->status;
-	int i = 0;
-	while (i < s->metric_count && strncmp((const char *)s->metrics[i].name, name, sizeof s->metrics[i].name) != 0)
-		i++;
-	if (i == (int)(sizeof s->metrics / sizeof s->metrics[0]))
-		return;
-	if (i == s->metric_count) {
-		text_set(s->metrics[i].name, sizeof s->metrics[i].name, name);
-		text_set(s->metrics[i].unit, sizeof s->metrics[i].unit, unit);
-		s->metric_count++;
-	}
-	s->metrics[i].value = isfinite(value) ? value : 0; /* the border lets nothing else pass */
-}
-
-/* ---- loop ----------------------------------------------------------------------------------------------------------- */
 
 static int on_bus(sd_event_source *source, int fd, uint32_t events, void *context)
 {
@@ -180,7 +23,7 @@ static int on_bus(sd_event_source *source, int fd, uint32_t events, void *contex
 		bool replayed = bus_is_file(process->bus);
 		if (!replayed)
 			process_error(process, "the bus is gone");
-		publish_status(process);
+		process_publish(process);
 		return sd_event_exit(process->event, replayed ? 0 : 1);
 	}
 	return 0;
@@ -189,7 +32,7 @@ static int on_bus(sd_event_source *source, int fd, uint32_t events, void *contex
 static int on_status_timer(sd_event_source *source, uint64_t usec, void *context)
 {
 	(void)source, (void)usec;
-	publish_status(context);
+	process_publish(context);
 	return 0;
 }
 

@@ -6,17 +6,9 @@
 
 #include "app/process/bus.h"
 #include "app/config/config.h"
+#include "app/process/process_options.h"
 
 enum { PROCESS_ERROR_SIZE = 256 };
-
-/* Command line shared by the services. */
-struct process_options {
-	const char *config;   /* -c FILE; the default path when not given; borrowed from argv */
-	const char *bus;      /* --bus URL, NULL: LCM_DEFAULT_URL or the configuration's */
-	const char *source;   /* --source, billiard-vision only; NULL: the configuration's */
-	double hold;	      /* --hold, billiard-vision only: s each photograph of a folder is shown */
-	const char *position; /* --position, billiard-table only; NULL: the opening position of snooker */
-};
 
 struct process {
 	const char *name; /* borrowed */
@@ -29,9 +21,6 @@ struct process {
 	int64_t ignored_logged;
 };
 
-/* Parses argv (getopt_long). 0; 1 when --help or --version answered (exit 0); -EINVAL after one line on stderr (exit 2). */
-int process_parse(struct process_options *out, const char *name, int argc, char **argv);
-
 /* Configuration and bus opened, signals blocked and watched. 0, or a negative errno after one line on stderr. finish() in every case. */
 int process_init(struct process *process, const char *name, const struct process_options *options,
 		 struct config *config);
@@ -42,6 +31,8 @@ void process_finish(struct process *process);
 /* Calls handler every period_us from now on. 0 or a negative errno. */
 int process_every(struct process *process, uint64_t period_us, sd_event_time_handler_t handler, void *context);
 
+/* Sends STATUS now; the loop does so every second. */
+void process_publish(struct process *process);
 /* State shown in STATUS; published at once when it changed. */
 void process_state(struct process *process, const char *format, ...) __attribute__((format(printf, 2, 3)));
 /* Keeps the last error for STATUS and logs it to stderr, once for as long as the text stays the same. */
