@@ -1,5 +1,6 @@
 /* Chains built backwards: geometry, speeds, limits. */
 #include "harness.h"
+#include "inverse_forward.h"
 #include "search_scenes.h"
 #include "scenes.h"
 

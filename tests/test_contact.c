@@ -1,5 +1,6 @@
 /* Contact laws of the thesis and of the simple models, and contacts that are solved together. */
 #include "harness.h"
+#include "inverse_forward.h"
 #include "scenes.h"
 
 #include <math.h>

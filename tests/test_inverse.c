@@ -1,5 +1,6 @@
 /* Each backward function undoes the forward one of its name, and the forward ones agree with the motion itself. */
 #include "harness.h"
+#include "inverse_forward.h"
 #include "scenes.h"
 
 #include <math.h>

@@ -25,6 +25,7 @@ static void setup(void)
 	status.pid = 17;
 	status.utime = 5000000;
 	status.started_utime = 2000000;
+	status.error_utime = 3000000;
 	SET(process, "billiard-vision");
 	SET(state, "photo K\xc3\xb6"
 		   "ln \"1\".png");
@@ -52,6 +53,7 @@ START_TEST(json_escapes)
 	ck_assert_str_eq(json_string_value(json_object_get(work, "unit")), "\xc2\xb5s");
 	ck_assert(json_is_null(json_object_get(work, "value"))); /* JSON has no NaN, and the line must not be lost */
 	ck_assert_double_eq(json_number_value(json_object_get(back, "up_s")), 3);
+	ck_assert_double_eq(json_number_value(json_object_get(back, "error_age_s")), 2);
 	json_decref(back);
 	json_decref(object);
 	free(text);
@@ -88,7 +90,7 @@ START_TEST(lines_for_people)
 	ck_assert_msg(strstr(text, "K\xc3\xb6"
 				   "ln \"1\".png") &&
 			      strstr(text, ", frames 30,") && strstr(text, " \xc2\xb5s\n") &&
-			      strstr(text, "last error: a\\b: \xe2\x82\xac\n"),
+			      strstr(text, "last error, 2 s ago: a\\b: \xe2\x82\xac\n"),
 		      "%s", text);
 	free(text);
 }

@@ -8,7 +8,8 @@ double bed_height(const struct bed *bed, vec2 pos)
 	       0.5 * (bed->bowl[0] * pos.x * pos.x + 2 * bed->bowl[1] * pos.x * pos.y + bed->bowl[2] * pos.y * pos.y);
 }
 
-vec2 bed_gradient(const struct bed *bed, vec2 pos)
+/* Way up: rise per way along x and y. */
+static vec2 bed_gradient(const struct bed *bed, vec2 pos)
 {
 	return (vec2){bed->slope.x + bed->bowl[0] * pos.x + bed->bowl[1] * pos.y,
 		      bed->slope.y + bed->bowl[1] * pos.x + bed->bowl[2] * pos.y};

@@ -20,9 +20,6 @@ struct bed_piece {
 /* m, height of the bed at a place over that at its middle. */
 double bed_height(const struct bed *bed, vec2 pos);
 
-/* Way up: rise per way along x and y. */
-vec2 bed_gradient(const struct bed *bed, vec2 pos);
-
 /* The present piece of a ball that slides or rolls on an uneven bed. */
 struct bed_piece bed_piece(const struct ball *ball, const struct table *table);
 

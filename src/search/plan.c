@@ -25,11 +25,6 @@ static const double CHAIN_SHARE = 0.2;
 static const char *const ranking_names[] = {
 	[RANK_THESIS] = "thesis", [RANK_SUCCESS] = "success", [RANK_VALUE] = "value"};
 
-const char *plan_ranking_name(enum plan_ranking ranking)
-{
-	return ranking_names[ranking];
-}
-
 bool plan_ranking_from_name(const char *name, enum plan_ranking *ranking)
 {
 	for (size_t i = 0; i < sizeof ranking_names / sizeof *ranking_names; i++)

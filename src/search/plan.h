@@ -24,7 +24,6 @@ enum plan_ranking {
 	RANK_VALUE    /* expected points of the visit less what the opponent may expect (search/value.h); one shot */
 };
 /* "thesis", "success", "value"; never NULL. */
-const char *plan_ranking_name(enum plan_ranking ranking);
 bool plan_ranking_from_name(const char *name, enum plan_ranking *ranking);
 
 /* A player profile (thesis O-6): weights and constants of the cost, by name of the term. Filled from config/. */
@@ -45,7 +44,7 @@ struct cost_profile {
 	int aims; /* 1: the middle of a pocket; 3, 5, ...: points across it too, for what the middle does not give */
 	enum plan_ranking ranking;
 	bool program_speed; /* start speeds by 4.33 for every leg, as the thesis' program; false: both branches */
-	bool any_first;	    /* do not ask which ball is struck first, as that program; false: by the rules. Requests with
+	bool any_first;	  /* do not ask which ball is struck first, as that program; false: by the rules. Requests with
 			       TARGET_RULES are by the rules in any case, unless their state says any_first, too */
 	bool keep_flukes; /* keep legal pots that are not the intended one, named by what falls, as that program does */
 };

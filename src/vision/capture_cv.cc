@@ -203,11 +203,6 @@ int next_video(capture *c, image_buffer *image, capture_frame *frame, char *err,
 
 } // namespace
 
-bool capture_is_live(const struct capture *capture)
-{
-	return capture->live;
-}
-
 int capture_open(struct capture **out, const struct capture_def *def, char *err, size_t err_size)
 {
 	*out = nullptr;

@@ -24,8 +24,6 @@ struct capture_frame {
 };
 
 struct capture;
-/* True for sources that produce frames in their own time (cameras): capture_next blocks until one is there. */
-bool capture_is_live(const struct capture *capture);
 /* 0, -EINVAL (unknown source, empty folder), -ENOENT, -EIO with the reason in err. Caller closes. */
 int capture_open(struct capture **out, const struct capture_def *def, char *err, size_t err_size);
 void capture_close(struct capture *capture); /* NULL is fine */

@@ -63,7 +63,7 @@ struct vision_ball {
 struct vision_result {
 	enum vision_calibration calibration;
 	char reason[96]; /* why not calibrated; empty when it is */
-	double pose_age; /* s */
+	double pose_age; /* s, since markers were last seen; 0 without a pose */
 	int markers_seen;
 	double residual_px, residual; /* rms of the marker corners: px, m on the table */
 	struct camera camera;	      /* valid unless CALIBRATION_NONE */

@@ -54,13 +54,6 @@ int cmd_bus(struct bus **out, const char *url, const struct config *config)
 	return CMD_OK;
 }
 
-int cmd_number(const char *option, const char *text, double low, double high, double *out)
-{
-	if (!option_number(text, low, high, out))
-		return cmd_bad_input("%s: found \"%s\", allowed a number %g to %g", option, text, low, high);
-	return CMD_OK;
-}
-
 json_t *cmd_json_text(const char *text)
 {
 	char clean[CMD_ERROR_SIZE];

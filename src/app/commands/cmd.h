@@ -57,10 +57,6 @@ struct bus;
  * on stderr. Caller closes. */
 int cmd_bus(struct bus **out, const char *url, const struct config *config);
 
-/* A finite decimal number within [low, high] and nothing else. CMD_OK, or CMD_BAD_INPUT after one line on stderr that
- * names the option; *out is untouched then. */
-int cmd_number(const char *option, const char *text, double low, double high, double *out);
-
 /* A JSON string of a text that comes from outside: bytes that are no UTF-8 become '?'. */
 json_t *cmd_json_text(const char *text);
 

@@ -39,7 +39,6 @@ struct demo {
 	struct demo_options options;
 	struct supervisor supervisor;
 	struct byte_buffer camera; /* newest CAMERA picture, JPEG */
-	int64_t camera_utime;
 	billiard_table_state_t seen, truth;
 	billiard_plan_t plan;
 	bool has_truth;
@@ -189,7 +188,6 @@ static bool on_camera(void *context, const void *message)
 	}
 	memcpy(d->camera.data, image->data, size);
 	d->camera.size = size;
-	d->camera_utime = image->utime;
 	return true;
 }
 

@@ -37,6 +37,11 @@ static double up_seconds(const billiard_status_t *s)
 	return 1e-6 * ((double)s->utime - (double)s->started_utime);
 }
 
+static double error_age(const billiard_status_t *s)
+{
+	return 1e-6 * ((double)s->utime - (double)s->error_utime);
+}
+
 /* JSON has no infinity. */
 static json_t *number(double value)
 {
@@ -51,9 +56,10 @@ json_t *status_json(const billiard_status_t *s)
 		struct metric m = metric_of(s, i);
 		json_object_set_new(metrics, m.name, json_pack("{s:o,s:s}", "value", number(m.value), "unit", m.unit));
 	}
-	return json_pack("{s:s,s:i,s:s,s:s,s:f,s:I,s:I,s:o}", "process", t.process, "pid", (int)s->pid, "state",
-			 t.state, "error", t.error, "up_s", up_seconds(s), "received", (json_int_t)s->received,
-			 "ignored", (json_int_t)s->ignored, "metrics", metrics);
+	return json_pack("{s:s,s:i,s:s,s:s,s:o,s:f,s:I,s:I,s:o}", "process", t.process, "pid", (int)s->pid, "state",
+			 t.state, "error", t.error, "error_age_s", t.error[0] ? json_real(error_age(s)) : json_null(),
+			 "up_s", up_seconds(s), "received", (json_int_t)s->received, "ignored", (json_int_t)s->ignored,
+			 "metrics", metrics);
 }
 
 void status_print_line(const billiard_status_t *s, FILE *out)
@@ -68,5 +74,5 @@ void status_print_line(const billiard_status_t *s, FILE *out)
 	}
 	fputc('\n', out);
 	if (t.error[0])
-		fprintf(out, "%-20s last error: %s\n", "", t.error);
+		fprintf(out, "%-20s last error, %.0f s ago: %s\n", "", error_age(s), t.error);
 }

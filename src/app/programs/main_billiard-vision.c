@@ -229,6 +229,7 @@ static void describe(void *context, struct process *process)
 	process_metric(process, "bad", "1", (double)(p->bad + f.bad));
 	process_metric(process, "balls", "1", p->result.ball_count);
 	process_metric(process, "residual", "px", p->result.residual_px);
+	process_metric(process, "pose age", "s", p->result.pose_age);
 }
 
 /* ---- set-up --------------------------------------------------------------------------------------------------------- */
