@@ -43,7 +43,8 @@ static void paint(int markers, double off)
 static enum calibration_news look(int frame)
 {
 	reason[0] = '\0';
-	return calibration_track(&calibration, &image.image, &camera.in, frame * dt, false, reason, sizeof(reason));
+	const struct calibration_frame view = {&image.image, &camera.in, frame * dt, false};
+	return calibration_track(&calibration, &view, reason, sizeof(reason));
 }
 
 /* Off by less than a bump in its first frame, right in all others: no more of it is left than of any other frame. */

@@ -114,19 +114,19 @@ static double disc_entry(struct approach d, double horizon, struct solve_count *
 	return roots_quartic_entry(c, horizon);
 }
 
-struct place {
+struct motion_place {
 	vec2 pos, vel;
 };
 
-static inline struct place place_at(const struct mover *mover, double now)
+static inline struct motion_place place_at(const struct mover *mover, double now)
 {
 	const struct ball *ball = mover->ball;
 	const struct motion *m = mover->motion;
 	double dt = now - m->begin;
 	if (dt <= 0 || m->reach == 0)
-		return (struct place){ball->pos, ball->vel};
-	return (struct place){vec2_madd(vec2_madd(ball->pos, dt, ball->vel), 0.5 * dt * dt, m->acceleration),
-			      vec2_madd(ball->vel, dt, m->acceleration)};
+		return (struct motion_place){ball->pos, ball->vel};
+	return (struct motion_place){vec2_madd(vec2_madd(ball->pos, dt, ball->vel), 0.5 * dt * dt, m->acceleration),
+				     vec2_madd(ball->vel, dt, m->acceleration)};
 }
 
 /* Every coefficient is rounded down, so for t >= 0 the rounded distance is never more than the true one: contacts come
@@ -155,7 +155,7 @@ double predict_pair(const struct predictor *by, const struct mover *a, const str
 		return INFINITY;
 	}
 	double end = ma->reach == 0 ? mb->end : mb->reach == 0 ? ma->end : fmin(ma->end, mb->end);
-	struct place pa = place_at(a, now), pb = place_at(b, now);
+	struct motion_place pa = place_at(a, now), pb = place_at(b, now);
 	struct approach d = {.p = vec2_sub(pb.pos, pa.pos),
 			     .v = vec2_sub(pb.vel, pa.vel),
 			     .a = vec2_sub(mb->acceleration, ma->acceleration),

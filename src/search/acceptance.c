@@ -69,7 +69,7 @@ static double border(const struct probe *probe, double good, double bad)
 	return good;
 }
 
-static struct window measure(const struct probe *probe)
+static struct acceptance_window measure(const struct probe *probe)
 {
 	double reach = SPREAD * probe->table->pocket[probe->pocket].radius;
 	double step = 2 * reach / (PROBES - 1);
@@ -84,9 +84,9 @@ static struct window measure(const struct probe *probe)
 		}
 	}
 	if (best < 0)
-		return (struct window){0, 0};
+		return (struct acceptance_window){0, 0};
 	double low = -reach + best * step, high = low + (best_length - 1) * step;
-	return (struct window){border(probe, low, low - step), border(probe, high, high + step)};
+	return (struct acceptance_window){border(probe, low, low - step), border(probe, high, high + step)};
 }
 
 static vec2 way_at(const struct table *table, int pocket, double angle)
@@ -108,22 +108,22 @@ void acceptance_measure(struct acceptance *acceptance, const struct table *table
 			}
 }
 
-static struct window between(const struct window *a, const struct window *b, double t)
+static struct acceptance_window between(const struct acceptance_window *a, const struct acceptance_window *b, double t)
 {
 	if (a->high <= a->low || b->high <= b->low)
 		return t < 0.5 ? *a : *b;
-	return (struct window){a->low + t * (b->low - a->low), a->high + t * (b->high - a->high)};
+	return (struct acceptance_window){a->low + t * (b->low - a->low), a->high + t * (b->high - a->high)};
 }
 
-struct window acceptance_at(const struct acceptance *acceptance, const struct table *table, int pocket, vec2 way,
-			    double speed)
+struct acceptance_window acceptance_at(const struct acceptance *acceptance, const struct table *table, int pocket,
+				       vec2 way, double speed)
 {
 	vec2 in = vec2_scale(table->pocket[pocket].normal, -1);
 	double at = atan2(vec2_cross(in, way), vec2_dot(in, way)) / ANGLE_STEP + ACCEPT_ANGLES / 2;
 	if (at < 0 || at > ACCEPT_ANGLES - 1)
-		return (struct window){0, 0};
+		return (struct acceptance_window){0, 0};
 	int a = at >= ACCEPT_ANGLES - 1 ? ACCEPT_ANGLES - 2 : (int)at;
 	int s = speed < 1 ? 0 : speed < 2.5 ? 1 : 2;
-	const struct window *w = acceptance->window[pocket][s];
+	const struct acceptance_window *w = acceptance->window[pocket][s];
 	return between(&w[a], &w[a + 1], at - a);
 }

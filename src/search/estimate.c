@@ -99,7 +99,7 @@ static bool set_ways(const struct estimator *e, vec2 white, vec2 object, struct 
 	double d = 2 * e->table->ball_radius;
 	vec2 centre = e->table->pocket[pot->pocket].centre;
 	vec2 way = vec2_unit(vec2_sub(centre, object));
-	struct window w = acceptance_at(&e->acceptance, e->table, pot->pocket, way, POT_SPEED);
+	struct acceptance_window w = acceptance_at(&e->acceptance, e->table, pot->pocket, way, POT_SPEED);
 	if (w.high <= w.low)
 		return false;
 	pot->goal = vec2_madd(centre, (w.low + w.high) / 2, vec2_perp(way));

@@ -35,8 +35,9 @@ struct pot {
 	double gain;   /* how many times an error of the aim is larger as an error of the object ball's direction */
 	double half;   /* rad, half width of the object ball's directions that fall */
 	double chance; /* 0..1 */
+	double brings; /* points, its own and what may follow */
 	double costs;  /* points, of a miss */
-	double value;  /* points: chance * what it brings - (1 - chance) * costs */
+	double value;  /* points: chance * brings - (1 - chance) * costs */
 };
 
 /* The chance that a normal error of sigma, off by bias, stays within +-half. */

@@ -20,9 +20,10 @@ bool respot_is_free(const struct table *table, const struct ball *ball, int coun
 	return inside(table, pos);
 }
 
-/* way: 1 towards +x, -1 towards -x. */
-static bool towards(const struct table *table, const struct ball *ball, int count, vec2 spot, double way, vec2 *pos)
+/* From *pos, the spot, to the free place; way: 1 towards +x, -1 towards -x. *pos is untouched when there is none. */
+static bool towards(const struct table *table, const struct ball *ball, int count, double way, vec2 *pos)
 {
+	const vec2 spot = *pos;
 	double least = 2 * table->ball_radius + RESPOT_GAP;
 	bool found = false;
 	/* The nearest free place is the spot itself or just clear of one of the balls. */
@@ -45,33 +46,35 @@ static bool towards(const struct table *table, const struct ball *ball, int coun
 
 bool respot_towards_top(const struct table *table, const struct ball *ball, int count, vec2 spot, vec2 *pos)
 {
-	return towards(table, ball, count, spot, 1, pos);
+	*pos = spot;
+	return towards(table, ball, count, 1, pos);
 }
 
 bool respot_towards_bottom(const struct table *table, const struct ball *ball, int count, vec2 spot, vec2 *pos)
 {
-	return towards(table, ball, count, spot, -1, pos);
+	*pos = spot;
+	return towards(table, ball, count, -1, pos);
 }
 
 enum { GRID = 64, CELLS = (2 * GRID + 1) * (2 * GRID + 1) };
 
-struct cell {
+struct respot_cell {
 	int8_t x, y;
 };
 
 bool respot_breadth_first(const struct table *table, const struct ball *ball, int count, vec2 spot, vec2 *pos)
 {
-	static const struct cell step[] = {{1, 0}, {0, 1}, {0, -1}, {-1, 0}};
+	static const struct respot_cell step[] = {{1, 0}, {0, 1}, {0, -1}, {-1, 0}};
 	bool seen[2 * GRID + 1][2 * GRID + 1] = {{false}};
-	struct cell queue[CELLS];
+	struct respot_cell queue[CELLS];
 	int head = 0, tail = 0;
 	double width = 2 * table->ball_radius;
-	queue[tail++] = (struct cell){0, 0};
+	queue[tail++] = (struct respot_cell){0, 0};
 	seen[GRID][GRID] = true;
 	while (head < tail) {
-		struct cell at = queue[head++];
+		struct respot_cell at = queue[head++];
 		for (int i = 0; i < 4; i++) {
-			struct cell next = {(int8_t)(at.x + step[i].x), (int8_t)(at.y + step[i].y)};
+			struct respot_cell next = {(int8_t)(at.x + step[i].x), (int8_t)(at.y + step[i].y)};
 			vec2 place = {spot.x + next.x * width, spot.y + next.y * width};
 			if (next.x < -GRID || next.x > GRID || next.y < -GRID || next.y > GRID ||
 			    !inside(table, place) || seen[next.x + GRID][next.y + GRID])

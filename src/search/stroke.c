@@ -42,7 +42,7 @@ static bool find_goal(const struct estimator *e, const struct ball *object, cons
 	double far = vec2_dist(object->pos, pot->goal), end = arrival(e, speed, far);
 	if (end < ARRIVAL)
 		return false;
-	struct window w = acceptance_at(&e->acceptance, e->table, pot->pocket, pot->way, end);
+	struct acceptance_window w = acceptance_at(&e->acceptance, e->table, pot->pocket, pot->way, end);
 	if (w.high <= w.low)
 		return false;
 	*goal = vec2_madd(centre, (w.low + w.high) / 2, vec2_perp(pot->way));

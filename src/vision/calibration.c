@@ -46,21 +46,25 @@ static int keep_known(const struct marker_layout *layout, const struct image *fr
 }
 
 static bool find_pose(struct calibration *c, const struct marker_view *view, int count,
-		      const struct camera_intrinsics *in, char *reason, size_t reason_size)
+		      const struct camera_intrinsics *in)
 {
 	struct camera camera = {.in = *in};
 	struct pose_fit fit;
-	if (pose_from_markers(c->layout, view, count, &camera, &fit)) {
-		c->camera = camera;
-		c->fit = fit;
-		c->valid = true;
-		return true;
-	}
+	if (!pose_from_markers(c->layout, view, count, &camera, &fit))
+		return false;
+	c->camera = camera;
+	c->fit = fit;
+	c->valid = true;
+	return true;
+}
+
+/* Why there was no pose. */
+static void say_why(const struct calibration *c, int count, char *reason, size_t reason_size)
+{
 	if (count < 3)
 		snprintf(reason, reason_size, "%d of %d markers seen, 3 are needed", count, c->layout->count);
 	else
 		snprintf(reason, reason_size, "the %d markers seen do not fit the table", count);
-	return false;
 }
 
 static void begin_average(struct calibration *c, const struct marker_view *view, int count)
@@ -78,8 +82,10 @@ bool calibration_single(struct calibration *c, const struct image *frame, const 
 	int count = keep_known(c->layout, frame, view, marker_find(c->finder, frame, view, MARKER_MAX));
 	calibration_reset(c);
 	c->now_count = count;
-	if (!find_pose(c, view, count, in, reason, reason_size))
+	if (!find_pose(c, view, count, in)) {
+		say_why(c, count, reason, reason_size);
 		return false;
+	}
 	begin_average(c, view, count);
 	return true;
 }
@@ -170,12 +176,12 @@ static int search(struct calibration *c, const struct image *frame, struct marke
 	return count;
 }
 
-static enum calibration_news begin(struct calibration *c, const struct image *frame, const struct camera_intrinsics *in,
-				   double time, char *reason, size_t reason_size)
+static enum calibration_news begin(struct calibration *c, const struct calibration_frame *frame, char *reason,
+				   size_t reason_size)
 {
-	if (!calibration_single(c, frame, in, reason, reason_size))
+	if (!calibration_single(c, frame->image, frame->in, reason, reason_size))
 		return CALIBRATION_LOST;
-	c->searched = c->found = time;
+	c->searched = c->found = frame->time;
 	return CALIBRATION_MOVED;
 }
 
@@ -188,26 +194,28 @@ static enum calibration_news without(struct calibration *c, double time, char *r
 	return CALIBRATION_LOST;
 }
 
-enum calibration_news calibration_track(struct calibration *c, const struct image *frame,
-					const struct camera_intrinsics *in, double time, bool urgent, char *reason,
+enum calibration_news calibration_track(struct calibration *c, const struct calibration_frame *frame, char *reason,
 					size_t reason_size)
 {
 	struct marker_view view[MARKER_MAX];
 	if (!c->valid)
-		return begin(c, frame, in, time, reason, reason_size);
-	if (time - c->searched < c->interval && !urgent)
+		return begin(c, frame, reason, reason_size);
+	if (frame->time - c->searched < c->interval && !frame->urgent)
 		return CALIBRATION_SAME;
-	c->searched = time;
-	int count = c->now_count = search(c, frame, view);
+	c->searched = frame->time;
+	int count = c->now_count = search(c, frame->image, view);
 	if (count < 3)
-		return without(c, time, reason, reason_size);
-	c->found = time;
-	if (moved_px(c, view, count) > BUMP_PX * in->width / 1280) {
+		return without(c, frame->time, reason, reason_size);
+	c->found = frame->time;
+	if (moved_px(c, view, count) > BUMP_PX * frame->in->width / 1280) {
 		begin_average(c, view, count);
-		return find_pose(c, view, count, in, reason, reason_size) ? CALIBRATION_MOVED
-									  : without(c, time, reason, reason_size);
+		if (find_pose(c, view, count, frame->in))
+			return CALIBRATION_MOVED;
+		say_why(c, count, reason, reason_size);
+		return without(c, frame->time, reason, reason_size);
 	}
 	average(c, view, count);
-	find_pose(c, c->seen, c->seen_count, in, reason, reason_size);
+	if (!find_pose(c, c->seen, c->seen_count, frame->in))
+		say_why(c, c->seen_count, reason, reason_size);
 	return CALIBRATION_REFINED;
 }

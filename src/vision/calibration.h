@@ -31,10 +31,16 @@ void calibration_reset(struct calibration *c);
 /* From one frame alone. in: constants for the frame's size. False, with the reason, when there is no pose. */
 bool calibration_single(struct calibration *c, const struct image *frame, const struct camera_intrinsics *in,
 			char *reason, size_t reason_size);
-/* The next frame of a stream. urgent: much of the picture changed, the camera may have been bumped. MOVED: the pose is
+struct calibration_frame {
+	const struct image *image;
+	const struct camera_intrinsics *in; /* constants for its size */
+	double time;			    /* s */
+	bool urgent;			    /* much of the picture changed, the camera may have been bumped */
+};
+
+/* The next frame of a stream. MOVED: the pose is
  * new and former pixels mean nothing any more. LOST: there is none (any more), with the reason. */
-enum calibration_news calibration_track(struct calibration *c, const struct image *frame,
-					const struct camera_intrinsics *in, double time, bool urgent, char *reason,
+enum calibration_news calibration_track(struct calibration *c, const struct calibration_frame *frame, char *reason,
 					size_t reason_size);
 
 #endif

@@ -32,21 +32,33 @@ static bool is_inside(const struct image *im, vec2 p)
 	return p.x >= 1 && p.y >= 1 && p.x < im->width - 2 && p.y < im->height - 2;
 }
 
+/* Where an edge is looked for: around p, along out (unit), which points from the black border to the white paper, as far as
+ * reach to both sides. */
+struct probe {
+	const struct image *im;
+	vec2 p, out;
+	double reach; /* px */
+};
+
 /* The place with as much grey missing on its white side as there is too much on its black side: right for every even
  * blur, where the half way is off by up to a tenth of a pixel for a sharp edge between pixels. */
-static double balanced(const struct image *im, vec2 p, vec2 out, double half, double low, double high)
+static double balanced(const struct probe *probe, double half, double low, double high)
 {
 	double sum = 0;
 	for (int i = -BALANCE; i <= BALANCE; i++) {
-		double share = (grey_at(im, vec2_madd(p, half + i * BALANCE_STEP, out)) - low) / (high - low);
+		vec2 at = vec2_madd(probe->p, half + i * BALANCE_STEP, probe->out);
+		double share = (grey_at(probe->im, at) - low) / (high - low);
 		sum += fmin(fmax(share, 0), 1) * (abs(i) == BALANCE ? 0.5 : 1);
 	}
 	return half + BALANCE_STEP * (BALANCE - sum);
 }
 
-/* Where the grey along out crosses the middle between its ends; out points from the black border to the white paper. */
-static bool edge_at(const struct image *im, vec2 p, vec2 out, double reach, double *offset)
+/* Where the grey crosses the middle between its ends: px along out. */
+static bool edge_at(const struct probe *probe, double *offset)
 {
+	const struct image *im = probe->im;
+	vec2 p = probe->p, out = probe->out;
+	double reach = probe->reach;
 	double v[PROFILE], step = 2 * reach / (PROFILE - 1);
 	double margin = reach + BALANCE * BALANCE_STEP;
 	if (!is_inside(im, vec2_madd(p, margin, out)) || !is_inside(im, vec2_madd(p, -margin, out)))
@@ -64,7 +76,7 @@ static bool edge_at(const struct image *im, vec2 p, vec2 out, double reach, doub
 	}
 	if (!(fabs(best) < reach))
 		return false;
-	*offset = balanced(im, p, out, best, low, high);
+	*offset = balanced(probe, best, low, high);
 	return true;
 }
 
@@ -99,16 +111,17 @@ static bool fit_line(const vec2 *point, int count, const struct line *former, st
 	return true;
 }
 
-/* The side from corner a to corner b; out: unit, away from the marker's middle. */
-static bool measure_side(const struct image *im, vec2 a, vec2 b, vec2 out, double reach, struct line *line)
+/* The side from the probe's place along way (px). */
+static bool measure_side(const struct probe *corner, vec2 way, struct line *line)
 {
 	vec2 point[EDGE_SAMPLES];
 	int count = 0;
 	for (int i = 0; i < EDGE_SAMPLES; i++) {
 		double k = ENDS + (1 - 2 * ENDS) * i / (EDGE_SAMPLES - 1), offset;
-		vec2 p = vec2_madd(a, k, vec2_sub(b, a));
-		if (edge_at(im, p, out, reach, &offset))
-			point[count++] = vec2_madd(p, offset, out);
+		struct probe probe = *corner;
+		probe.p = vec2_madd(corner->p, k, way);
+		if (edge_at(&probe, &offset))
+			point[count++] = vec2_madd(probe.p, offset, probe.out);
 	}
 	struct line rough;
 	return fit_line(point, count, NULL, &rough) && fit_line(point, count, &rough, line);
@@ -130,13 +143,13 @@ static bool refine_once(const struct image *frame, int cells, vec2 corner[4])
 	vec2 fresh[4],
 		middle = vec2_scale(vec2_add(vec2_add(corner[0], corner[1]), vec2_add(corner[2], corner[3])), 0.25);
 	for (int k = 0; k < 4; k++) {
-		vec2 a = corner[k], b = corner[(k + 1) % 4], along = vec2_sub(b, a);
+		vec2 a = corner[k], along = vec2_sub(corner[(k + 1) % 4], a);
 		vec2 out = vec2_unit(vec2_perp(along));
 		if (vec2_dot(out, vec2_sub(a, middle)) < 0)
 			out = vec2_scale(out, -1);
 		/* Not across the black border into the marker's bits. */
 		double reach = fmin(0.8 * vec2_norm(along) / cells, 3.5);
-		if (!measure_side(frame, a, b, out, reach, &side[k]))
+		if (!measure_side(&(struct probe){frame, a, out, reach}, along, &side[k]))
 			return false;
 	}
 	for (int k = 0; k < 4; k++)

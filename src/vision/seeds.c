@@ -35,13 +35,15 @@ void seeds_finish(struct seeds *seeds)
 }
 
 /* Second moments of the outline's points: for an ellipse they are half its matrix. */
-static bool shape_at(const struct scan *scan, const struct camera *camera, const struct table *table, double x,
-		     double y, struct seed_shape *out)
+/* at: px of the scan. */
+static bool shape_at(const struct scan *scan, const struct camera *camera, const struct table *table, vec2 at,
+		     struct seed_shape *out)
 {
 	vec2 pos;
 	struct outline o;
 	double r = table->ball_radius;
-	if (!camera_unproject(camera, scan_to_full(scan, x, y), r, &pos) || !outline_of_ball(camera, pos, r, 1, &o))
+	if (!camera_unproject(camera, scan_to_full(scan, at.x, at.y), r, &pos) ||
+	    !outline_of_ball(camera, pos, r, 1, &o))
 		return false;
 	vec2 middle = {0, 0};
 	for (int i = 0; i < OUTLINE_POINTS; i++)
@@ -72,10 +74,11 @@ bool seeds_place(struct seeds *seeds, const struct scan *scan, const struct came
 {
 	struct seed_shape knot[KNOTS_Y][KNOTS_X];
 	for (int j = 0; j < KNOTS_Y; j++)
-		for (int i = 0; i < KNOTS_X; i++)
-			if (!shape_at(scan, camera, table, (double)i * scan->width / (KNOTS_X - 1),
-				      (double)j * scan->height / (KNOTS_Y - 1), &knot[j][i]))
+		for (int i = 0; i < KNOTS_X; i++) {
+			vec2 at = {(double)i * scan->width / (KNOTS_X - 1), (double)j * scan->height / (KNOTS_Y - 1)};
+			if (!shape_at(scan, camera, table, at, &knot[j][i]))
 				return false;
+		}
 	for (int cy = 0; cy < scan->cells_y; cy++)
 		for (int cx = 0; cx < scan->cells_x; cx++) {
 			float x = ((float)cx + 0.5f) / (float)scan->cells_x * (KNOTS_X - 1);

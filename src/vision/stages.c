@@ -82,26 +82,33 @@ static void fill_small(struct image *out, const struct scan *scan, int x, int y,
 /* ---- stages
  * ---------------------------------------------------------------------------------------------------------- */
 
+/* Draws what lies at one height of the table. */
+struct table_pen {
+	struct image *out;
+	const struct camera *camera;
+	double z; /* m */
+	struct colour colour;
+};
+
 /* Straight on the table is not straight through a lens: in steps. */
-static void table_line(struct image *out, const struct camera *camera, vec2 a, vec2 b, double z, struct colour colour)
+static void table_line(const struct table_pen *pen, vec2 a, vec2 b)
 {
 	enum { STEPS = 24 };
 	vec2 from, to;
 	for (int i = 0; i < STEPS; i++)
-		if (camera_project(camera, vec2_madd(a, (double)i / STEPS, vec2_sub(b, a)), z, &from) &&
-		    camera_project(camera, vec2_madd(a, (i + 1.0) / STEPS, vec2_sub(b, a)), z, &to))
-			line(out, from, to, colour);
+		if (camera_project(pen->camera, vec2_madd(a, (double)i / STEPS, vec2_sub(b, a)), pen->z, &from) &&
+		    camera_project(pen->camera, vec2_madd(a, (i + 1.0) / STEPS, vec2_sub(b, a)), pen->z, &to))
+			line(pen->out, from, to, pen->colour);
 }
 
-static void table_box(struct image *out, const struct camera *camera, vec2 mid, vec2 half, double z,
-		      struct colour colour)
+static void table_box(const struct table_pen *pen, vec2 mid, vec2 half)
 {
 	static const int sx[] = {-1, 1, 1, -1}, sy[] = {-1, -1, 1, 1};
 	for (int i = 0; i < 4; i++) {
 		int k = (i + 1) % 4;
 		vec2 a = {mid.x + sx[i] * half.x, mid.y + sy[i] * half.y};
 		vec2 b = {mid.x + sx[k] * half.x, mid.y + sy[k] * half.y};
-		table_line(out, camera, a, b, z, colour);
+		table_line(pen, a, b);
 	}
 }
 
@@ -114,9 +121,11 @@ void stage_markers(const struct stage_watch *watch, const struct image *frame, c
 	const struct marker_layout *layout = calibration->layout;
 	if (begin_frame(&out, frame) && calibration->valid) {
 		vec2 half = {layout->side / 2, layout->side / 2}, bed = {table->length / 2, table->width / 2};
-		table_box(&out, &calibration->camera, (vec2){0, 0}, bed, 0, BLUE);
+		const struct camera *camera = &calibration->camera;
+		table_box(&(struct table_pen){&out, camera, 0, BLUE}, (vec2){0, 0}, bed);
+		const struct table_pen pen = {&out, camera, layout->height, RED};
 		for (int i = 0; i < layout->count; i++)
-			table_box(&out, &calibration->camera, layout->marker[i].centre, half, layout->height, RED);
+			table_box(&pen, layout->marker[i].centre, half);
 	}
 	for (int i = 0; i < 4 * calibration->seen_count && out.data; i++) {
 		const struct marker_view *m = &calibration->seen[i / 4];

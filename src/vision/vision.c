@@ -408,8 +408,8 @@ int vision_track(struct vision *vision, const struct image *frame, double time, 
 	begin_frame(vision, frame, time);
 	int changed = vision->tracking ? scan_changes(s, frame) : 0;
 	bool urgent = changed > BUMP_SHARE * s->cells_x * s->cells_y;
-	enum calibration_news news =
-		calibration_track(&vision->stream, frame, &r.camera.in, time, urgent, r.reason, sizeof(r.reason));
+	const struct calibration_frame view = {frame, &r.camera.in, time, urgent};
+	enum calibration_news news = calibration_track(&vision->stream, &view, r.reason, sizeof(r.reason));
 	if (news == CALIBRATION_LOST) {
 		r.markers_seen = vision->stream.now_count;
 		vision->tracking = false;

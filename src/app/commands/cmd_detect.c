@@ -20,7 +20,7 @@ struct detect_line {
 	bool json;
 };
 
-struct detector {
+struct detection {
 	struct config config;
 	struct colour_model colours;
 	struct vision *vision;
@@ -86,17 +86,17 @@ static int check(const struct detect_line *options, int argc, char **argv, int f
 	return options->overlay ? check_overlay(options->overlay, argv[first]) : CMD_OK;
 }
 
-static int prepare(struct detector *detector, const struct detect_line *options)
+static int prepare(struct detection *detection, const struct detect_line *options)
 {
 	char err[CMD_ERROR_SIZE] = "";
-	int status = cmd_config(&detector->config, options->config);
+	int status = cmd_config(&detection->config, options->config);
 	if (status != CMD_OK)
 		return status;
-	if (colour_file_read(detector->config.colours, &detector->colours, err, sizeof err) < 0)
+	if (colour_file_read(detection->config.colours, &detection->colours, err, sizeof err) < 0)
 		return cmd_bad_input("%s", err);
-	struct vision_def def = config_vision_def(&detector->config, &detector->colours);
-	if (vision_create(&detector->vision, &def, err, sizeof err) < 0)
-		return cmd_bad_input("%s: %s", detector->config.path, err[0] ? err : "out of memory");
+	struct vision_def def = config_vision_def(&detection->config, &detection->colours);
+	if (vision_create(&detection->vision, &def, err, sizeof err) < 0)
+		return cmd_bad_input("%s: %s", detection->config.path, err[0] ? err : "out of memory");
 	return CMD_OK;
 }
 
@@ -166,16 +166,16 @@ static void dump_stage(void *user, const char *name, const struct image *image)
 }
 
 /* Detects once more, so that the time of the first is not that of drawing. */
-static int write_stages(struct detector *detector, const char *folder)
+static int write_stages(struct detection *detection, const char *folder)
 {
 	char err[CMD_ERROR_SIZE] = "";
 	struct dump dump = {.folder = folder};
 	struct stage_watch watch = {dump_stage, &dump};
 	if (mkdir(folder, 0777) < 0 && errno != EEXIST)
 		return cmd_bad_input("%s: %s", folder, strerror(errno));
-	vision_watch(detector->vision, &watch);
-	int rc = vision_detect(detector->vision, &detector->buffer.image, &detector->result, err, sizeof err);
-	vision_watch(detector->vision, NULL);
+	vision_watch(detection->vision, &watch);
+	int rc = vision_detect(detection->vision, &detection->buffer.image, &detection->result, err, sizeof err);
+	vision_watch(detection->vision, NULL);
 	if (rc < 0 || dump.err[0] != '\0')
 		return cmd_bad_input("%s", rc < 0 ? err : dump.err);
 	return CMD_OK;
@@ -190,36 +190,36 @@ static double now_ms(void)
 	return (double)t.tv_sec * 1e3 + (double)t.tv_nsec * 1e-6;
 }
 
-static int write_overlay(const struct detector *detector, const char *path)
+static int write_overlay(const struct detection *detection, const char *path)
 {
 	char err[CMD_ERROR_SIZE];
 	struct vision_refusal refused[OVERLAY_REFUSED_MAX];
-	int count = vision_refusals(detector->vision, refused, OVERLAY_REFUSED_MAX);
-	struct overlay overlay = {.frame = &detector->buffer.image,
-				  .table = &detector->config.table,
-				  .result = &detector->result,
+	int count = vision_refusals(detection->vision, refused, OVERLAY_REFUSED_MAX);
+	struct overlay overlay = {.frame = &detection->buffer.image,
+				  .table = &detection->config.table,
+				  .result = &detection->result,
 				  .refused = refused,
 				  .refused_count = count < OVERLAY_REFUSED_MAX ? count : OVERLAY_REFUSED_MAX};
 	int code = overlay_write(&overlay, path, err, sizeof err);
 	return code < 0 ? cmd_not_written(code, err) : CMD_OK;
 }
 
-static int detect(struct detector *detector, const struct detect_line *options, const char *path)
+static int detect(struct detection *detection, const struct detect_line *options, const char *path)
 {
 	char err[CMD_ERROR_SIZE] = "";
-	if (image_read(path, &detector->buffer, err, sizeof err) < 0)
+	if (image_read(path, &detection->buffer, err, sizeof err) < 0)
 		return cmd_bad_input("%s", err);
 	double begin = now_ms();
-	int code = vision_detect(detector->vision, &detector->buffer.image, &detector->result, err, sizeof err);
+	int code = vision_detect(detection->vision, &detection->buffer.image, &detection->result, err, sizeof err);
 	double ms = now_ms() - begin;
 	if (code < 0)
 		return cmd_bad_input("%s: %s", path, err);
-	if (options->dump && write_stages(detector, options->dump) != CMD_OK)
+	if (options->dump && write_stages(detection, options->dump) != CMD_OK)
 		return CMD_BAD_INPUT;
-	int status = options->overlay ? write_overlay(detector, options->overlay) : CMD_OK;
+	int status = options->overlay ? write_overlay(detection, options->overlay) : CMD_OK;
 	if (status != CMD_OK)
 		return status;
-	return options->json ? print_json(path, &detector->result, ms) : print_table(path, &detector->result, ms);
+	return options->json ? print_json(path, &detection->result, ms) : print_table(path, &detection->result, ms);
 }
 
 int cmd_detect(int argc, char **argv)
@@ -231,18 +231,18 @@ int cmd_detect(int argc, char **argv)
 	status = check(&options, argc, argv, first);
 	if (status != CMD_OK)
 		return status;
-	struct detector *detector = calloc(1, sizeof *detector);
-	if (!detector)
+	struct detection *detection = calloc(1, sizeof *detection);
+	if (!detection)
 		return cmd_bad_input("%s: out of memory", argv[0]);
-	status = prepare(detector, &options);
+	status = prepare(detection, &options);
 	if (status == CMD_OK) {
 		for (int i = first; i < argc; i++) {
-			int one = detect(detector, &options, argv[i]);
+			int one = detect(detection, &options, argv[i]);
 			status = one > status ? one : status;
 		}
 	}
-	vision_destroy(detector->vision);
-	image_buffer_finish(&detector->buffer);
-	free(detector);
+	vision_destroy(detection->vision);
+	image_buffer_finish(&detection->buffer);
+	free(detection);
 	return status;
 }

@@ -119,13 +119,20 @@ static bool parse_number(const char *text, double limit, double *out)
 	return true;
 }
 
-static int parse_point(struct reader *reader, const char *x, const char *y, double limit, const char *unit, vec2 *out)
+struct bound {
+	double limit;
+	const char *unit;
+};
+
+/* Two texts, x and y, within +- the bound. */
+static int parse_point(struct reader *reader, const char text[2][FIELD_SIZE], const struct bound *bound, vec2 *out)
 {
 	vec2 value;
-	if (!parse_number(x, limit, &value.x))
-		return fail(reader, reader->line, "\"%s\" is not a number within +-%g %s", x, limit, unit);
-	if (!parse_number(y, limit, &value.y))
-		return fail(reader, reader->line, "\"%s\" is not a number within +-%g %s", y, limit, unit);
+	double *const number[2] = {&value.x, &value.y};
+	for (int i = 0; i < 2; i++)
+		if (!parse_number(text[i], bound->limit, number[i]))
+			return fail(reader, reader->line, "\"%s\" is not a number within +-%g %s", text[i],
+				    bound->limit, bound->unit);
 	*out = (vec2){value.x / mm, value.y / mm};
 	return 0;
 }
@@ -134,7 +141,7 @@ static int parse_velocity(struct reader *reader, const struct fields *fields)
 {
 	if (reader->position.has_velocity)
 		return fail(reader, reader->line, "a second V line");
-	int code = parse_point(reader, fields->text[1], fields->text[2], speed_max_mm_s, "mm/s",
+	int code = parse_point(reader, fields->text + 1, &(struct bound){speed_max_mm_s, "mm/s"},
 			       &reader->position.velocity);
 	if (code == 0 && vec2_norm(reader->position.velocity) * mm > speed_max_mm_s)
 		return fail(reader, reader->line, "faster than %g mm/s", speed_max_mm_s);
@@ -179,7 +186,7 @@ static int parse_ball(struct reader *reader, const struct fields *fields)
 	if (position_find(&reader->position, id) >= 0)
 		return fail(reader, reader->line, "%s is there twice", id);
 	vec2 pos;
-	int code = parse_point(reader, fields->text[2], fields->text[3], place_max_mm, "mm", &pos);
+	int code = parse_point(reader, fields->text + 2, &(struct bound){place_max_mm, "mm"}, &pos);
 	return code < 0 ? code : add_ball(reader, id, fields->text[1], pos);
 }
 

@@ -13,18 +13,22 @@ static int fail(const char *path, const char *reason, int code, char *err, size_
 }
 
 /* Opening a folder succeeds and only reading it fails, so it is asked for first. */
-static int read_all(FILE *file, const char *path, size_t max, char *text, size_t *size, char *err, size_t err_size)
+static int read_all(FILE *file, size_t max, char *text, size_t *size, const char **reason)
 {
 	struct stat info;
+	*reason = "is a folder";
 	if (fstat(fileno(file), &info) == 0 && S_ISDIR(info.st_mode))
-		return fail(path, "is a folder", -EISDIR, err, err_size);
+		return -EISDIR;
 	size_t n = fread(text, 1, max + 1, file);
+	*reason = strerror(errno);
 	if (ferror(file))
-		return fail(path, strerror(errno), -EIO, err, err_size);
+		return -EIO;
+	*reason = "is too long";
 	if (n > max)
-		return fail(path, "is too long", -EFBIG, err, err_size);
+		return -EFBIG;
+	*reason = "is not a text (UTF-8 is wanted)";
 	if (memchr(text, 0, n))
-		return fail(path, "is not a text (UTF-8 is wanted)", -EBADMSG, err, err_size);
+		return -EBADMSG;
 	/* Some editors put a mark before UTF-8. */
 	if (n >= 3 && memcmp(text, "\xef\xbb\xbf", 3) == 0)
 		memmove(text, text + 3, n -= 3);
@@ -41,8 +45,10 @@ int text_file_read(const char *path, size_t max, char **text, size_t *size, char
 		return fail(path, strerror(-code), code, err, err_size);
 	}
 	char *buffer = malloc(max + 1);
-	int code = buffer ? read_all(file, path, max, buffer, size, err, err_size)
-			  : fail(path, "out of memory", -ENOMEM, err, err_size);
+	const char *reason = "out of memory";
+	int code = buffer ? read_all(file, max, buffer, size, &reason) : -ENOMEM;
+	if (code < 0)
+		fail(path, reason, code, err, err_size);
 	if (file != stdin)
 		fclose(file);
 	if (code < 0)

@@ -24,7 +24,7 @@ static const uint32_t HALO_RGBA = 0xc0ffffff, GHOST_RGBA = 0xffffffff, CUE_RGBA 
 		      TEXT_RGBA = 0xe0ffffff, INFO_RGBA = 0xa0e0e0ff;
 
 /* What all parts of one picture need. */
-struct scene {
+struct proposal {
 	billiard_draw_list_t *list;
 	const struct table *table;
 	const billiard_plan_t *plan;
@@ -62,20 +62,20 @@ static void draw_info(const struct draw_field *field, billiard_draw_list_t *list
 
 /* ---- proposal ---- */
 
-static bool ball_lies(const struct scene *scene, int ball)
+static bool ball_lies(const struct proposal *proposal, int ball)
 {
-	return ball >= 0 && scene->shot->start_on[ball];
+	return ball >= 0 && proposal->shot->start_on[ball];
 }
 
-static vec2 ball_start(const struct scene *scene, int ball)
+static vec2 ball_start(const struct proposal *proposal, int ball)
 {
-	return (vec2){scene->shot->start_x[ball], scene->shot->start_y[ball]};
+	return (vec2){proposal->shot->start_x[ball], proposal->shot->start_y[ball]};
 }
 
-static int cue_ball(const struct scene *scene)
+static int cue_ball(const struct proposal *proposal)
 {
-	for (int i = 0; i < scene->ball_count; i++)
-		if (scene->plan->colours[i] == COLOUR_WHITE)
+	for (int i = 0; i < proposal->ball_count; i++)
+		if (proposal->plan->colours[i] == COLOUR_WHITE)
 			return i;
 	return -1;
 }
@@ -87,97 +87,100 @@ static bool has_room(const billiard_draw_list_t *list, int points)
 }
 
 /* Parts of a path that cannot be drawn whole are better not drawn at all. */
-static void stroke(const struct scene *scene, const vec2 *point, int count, const struct draw_pen *pen)
+static void stroke(const struct proposal *proposal, const vec2 *point, int count, const struct draw_pen *pen)
 {
-	if (count >= 2 && has_room(scene->list, count))
-		draw_field_stroke(&scene->field, scene->list, point, count, pen);
+	if (count >= 2 && has_room(proposal->list, count))
+		draw_field_stroke(&proposal->field, proposal->list, point, count, pen);
 }
 
-static void draw_ghost(const struct scene *scene, vec2 at)
+static void draw_ghost(const struct proposal *proposal, vec2 at)
 {
 	const struct draw_pen pen = {THIN, GHOST_RGBA, false};
-	draw_field_ring(&scene->field, scene->list, at, GHOST * scene->table->ball_radius, &pen);
+	draw_field_ring(&proposal->field, proposal->list, at, GHOST * proposal->table->ball_radius, &pen);
 }
 
-static bool falls(const struct scene *scene, int ball)
+static bool falls(const struct proposal *proposal, int ball)
 {
-	for (int i = 0; i < scene->shot->potted_count; i++)
-		if (scene->shot->potted_ball[i] == ball)
+	for (int i = 0; i < proposal->shot->potted_count; i++)
+		if (proposal->shot->potted_ball[i] == ball)
 			return true;
 	return false;
 }
 
 /* Where a ball that moved comes to rest. */
-static void draw_end(const struct scene *scene, int ball, const struct draw_path *path, uint32_t rgba)
+static void draw_end(const struct proposal *proposal, int ball, const struct draw_path *path, uint32_t rgba)
 {
-	double radius = scene->table->ball_radius;
-	if (path->count < 2 || falls(scene, ball) || vec2_dist(path->point[0], path->point[path->count - 1]) < radius)
+	double radius = proposal->table->ball_radius;
+	if (path->count < 2 || falls(proposal, ball) ||
+	    vec2_dist(path->point[0], path->point[path->count - 1]) < radius)
 		return;
 	const struct draw_pen pen = {THIN, rgba, false};
-	if (has_room(scene->list, 1))
-		draw_field_ring(&scene->field, scene->list, path->point[path->count - 1], radius, &pen);
+	if (has_room(proposal->list, 1))
+		draw_field_ring(&proposal->field, proposal->list, path->point[path->count - 1], radius, &pen);
 }
 
-static void draw_cue(const struct scene *scene, int cue)
+static void draw_cue(const struct proposal *proposal, int cue)
 {
 	struct draw_path path;
-	draw_path_of(&path, scene->plan, scene->shot, cue);
+	draw_path_of(&path, proposal->plan, proposal->shot, cue);
 	int solid = path.contact >= 0 ? path.contact + 1 : path.count;
-	stroke(scene, path.point, solid, &(struct draw_pen){LINE, CUE_RGBA, false});
+	stroke(proposal, path.point, solid, &(struct draw_pen){LINE, CUE_RGBA, false});
 	if (path.contact < 0)
 		return;
-	draw_ghost(scene, path.point[path.contact]);
-	if (!scene->options->other_paths)
+	draw_ghost(proposal, path.point[path.contact]);
+	if (!proposal->options->other_paths)
 		return;
-	stroke(scene, path.point + path.contact, path.count - path.contact, &(struct draw_pen){THIN, CUE_RGBA, true});
-	draw_end(scene, cue, &path, CUE_RGBA);
+	stroke(proposal, path.point + path.contact, path.count - path.contact,
+	       &(struct draw_pen){THIN, CUE_RGBA, true});
+	draw_end(proposal, cue, &path, CUE_RGBA);
 }
 
-static void draw_object(const struct scene *scene, int ball, bool dashed)
+static void draw_object(const struct proposal *proposal, int ball, bool dashed)
 {
 	struct draw_path path;
-	draw_path_of(&path, scene->plan, scene->shot, ball);
-	struct draw_pen pen = {dashed ? THIN : LINE, draw_ball_rgba(scene->plan->colours[ball]), dashed};
-	stroke(scene, path.point, path.count, &pen);
-	draw_end(scene, ball, &path, pen.rgba);
+	draw_path_of(&path, proposal->plan, proposal->shot, ball);
+	struct draw_pen pen = {dashed ? THIN : LINE, draw_ball_rgba(proposal->plan->colours[ball]), dashed};
+	stroke(proposal, path.point, path.count, &pen);
+	draw_end(proposal, ball, &path, pen.rgba);
 }
 
 /* A shot whose keyframes did not fit: straight from ball to ball as far as the start position tells. */
-static void draw_without_keyframes(const struct scene *scene, int cue)
+static void draw_without_keyframes(const struct proposal *proposal, int cue)
 {
-	int target = scene->shot->target, pocket = scene->shot->pocket;
-	double angle = scene->shot->angle;
-	if (ball_lies(scene, cue)) {
-		vec2 from = ball_start(scene, cue);
-		vec2 aim[2] = {from, vec2_madd(from, scene->table->width / 2, vec2_from_angle(angle))};
-		stroke(scene, aim, 2, &(struct draw_pen){LINE, CUE_RGBA, false});
+	int target = proposal->shot->target, pocket = proposal->shot->pocket;
+	double angle = proposal->shot->angle;
+	if (ball_lies(proposal, cue)) {
+		vec2 from = ball_start(proposal, cue);
+		vec2 aim[2] = {from, vec2_madd(from, proposal->table->width / 2, vec2_from_angle(angle))};
+		stroke(proposal, aim, 2, &(struct draw_pen){LINE, CUE_RGBA, false});
 	}
-	if (scene->shot->rails == 0 && ball_lies(scene, target) && pocket >= 0) {
-		vec2 way[2] = {ball_start(scene, target), scene->table->pocket[pocket].centre};
-		stroke(scene, way, 2, &(struct draw_pen){LINE, draw_ball_rgba(scene->plan->colours[target]), false});
+	if (proposal->shot->rails == 0 && ball_lies(proposal, target) && pocket >= 0) {
+		vec2 way[2] = {ball_start(proposal, target), proposal->table->pocket[pocket].centre};
+		stroke(proposal, way, 2,
+		       &(struct draw_pen){LINE, draw_ball_rgba(proposal->plan->colours[target]), false});
 	}
 }
 
-static void draw_paths(const struct scene *scene)
+static void draw_paths(const struct proposal *proposal)
 {
-	int cue = cue_ball(scene), target = scene->shot->target;
-	if (scene->shot->keyframe_count == 0) {
-		draw_without_keyframes(scene, cue);
+	int cue = cue_ball(proposal), target = proposal->shot->target;
+	if (proposal->shot->keyframe_count == 0) {
+		draw_without_keyframes(proposal, cue);
 		return;
 	}
-	if (ball_lies(scene, cue))
-		draw_cue(scene, cue);
-	if (target != cue && ball_lies(scene, target))
-		draw_object(scene, target, false);
-	if (!scene->options->other_paths)
+	if (ball_lies(proposal, cue))
+		draw_cue(proposal, cue);
+	if (target != cue && ball_lies(proposal, target))
+		draw_object(proposal, target, false);
+	if (!proposal->options->other_paths)
 		return;
-	for (int i = 0; i < scene->ball_count; i++)
-		if (i != cue && i != target && ball_lies(scene, i))
-			draw_object(scene, i, true);
+	for (int i = 0; i < proposal->ball_count; i++)
+		if (i != cue && i != target && ball_lies(proposal, i))
+			draw_object(proposal, i, true);
 }
 
 /* The part of a ring around the pocket that lies on the bed: light on the rails would disturb the markers. */
-static void draw_pocket_arc(const struct scene *scene, const struct pocket *pocket, const struct draw_pen *pen)
+static void draw_pocket_arc(const struct proposal *proposal, const struct pocket *pocket, const struct draw_pen *pen)
 {
 	vec2 arc[POCKET_POINTS];
 	int count = 0;
@@ -186,48 +189,49 @@ static void draw_pocket_arc(const struct scene *scene, const struct pocket *pock
 	for (int i = 0; i < POCKET_POINTS; i++) {
 		vec2 p = vec2_madd(pocket->centre, POCKET * pocket->radius,
 				   vec2_from_angle(begin + i * 2 * acos(-1) / (POCKET_POINTS - 1)));
-		if (fabs(p.x) < scene->table->length / 2 && fabs(p.y) < scene->table->width / 2)
+		if (fabs(p.x) < proposal->table->length / 2 && fabs(p.y) < proposal->table->width / 2)
 			arc[count++] = p;
 	}
-	stroke(scene, arc, count, pen);
+	stroke(proposal, arc, count, pen);
 }
 
-static void draw_pocket(const struct scene *scene)
+static void draw_pocket(const struct proposal *proposal)
 {
-	int pocket = scene->shot->pocket, target = scene->shot->target;
+	int pocket = proposal->shot->pocket, target = proposal->shot->target;
 	if (pocket < 0)
 		return;
-	uint32_t rgba = ball_lies(scene, target) ? draw_ball_rgba(scene->plan->colours[target]) : GHOST_RGBA;
-	draw_pocket_arc(scene, &scene->table->pocket[pocket], &(struct draw_pen){2 * LINE, rgba, false});
+	uint32_t rgba = ball_lies(proposal, target) ? draw_ball_rgba(proposal->plan->colours[target]) : GHOST_RGBA;
+	draw_pocket_arc(proposal, &proposal->table->pocket[pocket], &(struct draw_pen){2 * LINE, rgba, false});
 }
 
 /* Speed and angle (counter-clockwise from the way to the black cushion) where the player looks, at the cue ball; the pocket's name at the
  * pocket. */
-static void draw_labels(const struct scene *scene, int number, int shots)
+static void draw_labels(const struct proposal *proposal, int number, int shots)
 {
 	char text[64], which[32] = "";
-	int pocket = scene->shot->pocket, cue = cue_ball(scene);
+	int pocket = proposal->shot->pocket, cue = cue_ball(proposal);
 	if (shots > 1)
 		snprintf(which, sizeof(which), "  %d/%d", number, shots);
-	snprintf(text, sizeof(text), "%.1f m/s  %.0f\u00b0%s", scene->shot->speed, scene->shot->angle * RADIAN, which);
-	vec2 at_cue = ball_lies(scene, cue) ? ball_start(scene, cue) : (vec2){0, 0};
-	draw_field_text(&scene->field, scene->list,
+	snprintf(text, sizeof(text), "%.1f m/s  %.0f\u00b0%s", proposal->shot->speed, proposal->shot->angle * RADIAN,
+		 which);
+	vec2 at_cue = ball_lies(proposal, cue) ? ball_start(proposal, cue) : (vec2){0, 0};
+	draw_field_text(&proposal->field, proposal->list,
 			&(struct draw_label){text, at_cue, TEXT_REACH, TEXT_HEIGHT, TEXT_RGBA});
 	if (pocket < 0)
 		return;
-	const struct pocket *p = &scene->table->pocket[pocket];
-	draw_field_text(&scene->field, scene->list,
+	const struct pocket *p = &proposal->table->pocket[pocket];
+	draw_field_text(&proposal->field, proposal->list,
 			&(struct draw_label){p->name, p->centre, POCKET_REACH, POCKET_HEIGHT, TEXT_RGBA});
 }
 
-static void draw_infos(const struct scene *scene)
+static void draw_infos(const struct proposal *proposal)
 {
-	for (int i = 0; i < scene->ball_count; i++) {
-		if (!ball_lies(scene, i))
+	for (int i = 0; i < proposal->ball_count; i++) {
+		if (!ball_lies(proposal, i))
 			continue;
 		char name[16] = "";
-		memcpy(name, scene->plan->names[i], sizeof(name) - 1);
-		draw_info(&scene->field, scene->list, ball_start(scene, i), name);
+		memcpy(name, proposal->plan->names[i], sizeof(name) - 1);
+		draw_info(&proposal->field, proposal->list, ball_start(proposal, i), name);
 	}
 }
 
@@ -236,23 +240,23 @@ void draw_proposal(billiard_draw_list_t *list, const struct table *table, const 
 {
 	const billiard_plan_t *plan = subject->plan;
 	const billiard_plan_entry_t *entry = &plan->entries[subject->entry];
-	struct scene scene = {list, table, plan, &entry->shots[subject->shot], options, {0}, plan->ball_count};
+	struct proposal proposal = {list, table, plan, &entry->shots[subject->shot], options, {0}, plan->ball_count};
 	draw_clear(list);
 	list->plan_id = plan->request_id;
-	draw_field_init(&scene.field, table);
-	for (int i = 0; i < scene.ball_count; i++)
-		if (ball_lies(&scene, i))
-			draw_field_add(&scene.field, ball_start(&scene, i));
+	draw_field_init(&proposal.field, table);
+	for (int i = 0; i < proposal.ball_count; i++)
+		if (ball_lies(&proposal, i))
+			draw_field_add(&proposal.field, ball_start(&proposal, i));
 	if (options->table)
 		draw_table(list, table);
 	if (options->halo)
-		draw_halos(&scene.field, list);
-	draw_pocket(&scene);
-	draw_paths(&scene);
-	if (scene.shot->speed > 0)
-		draw_labels(&scene, subject->shot + 1, entry->shot_count);
+		draw_halos(&proposal.field, list);
+	draw_pocket(&proposal);
+	draw_paths(&proposal);
+	if (proposal.shot->speed > 0)
+		draw_labels(&proposal, subject->shot + 1, entry->shot_count);
 	if (options->info)
-		draw_infos(&scene);
+		draw_infos(&proposal);
 }
 
 void draw_idle(billiard_draw_list_t *list, const struct table *table, const struct draw_resting *resting,

@@ -5,7 +5,7 @@
 #include <string.h>
 
 /* Where in a message, for the reason: "entries[0].shots[1].". */
-struct place {
+struct message_place {
 	char path[64];
 	char *reason;
 	size_t reason_size;
@@ -55,7 +55,7 @@ static void name_element(const struct message_member *member, int i, char *out, 
 		snprintf(out, size, "%s", member->name);
 }
 
-static bool refuse(const struct message_member *member, int i, double value, const struct place *place)
+static bool refuse(const struct message_member *member, int i, double value, const struct message_place *place)
 {
 	char name[48], allowed[64];
 	name_element(member, i, name, sizeof name);
@@ -69,11 +69,11 @@ static bool refuse(const struct message_member *member, int i, double value, con
 	return false;
 }
 
-static bool check(const struct message_table *table, const uint8_t *message, struct place *place);
+static bool check(const struct message_table *table, const uint8_t *message, struct message_place *place);
 
-static bool check_part(const struct message_member *member, int i, const uint8_t *at, const struct place *place)
+static bool check_part(const struct message_member *member, int i, const uint8_t *at, const struct message_place *place)
 {
-	struct place within = {.reason = place->reason, .reason_size = place->reason_size};
+	struct message_place within = {.reason = place->reason, .reason_size = place->reason_size};
 	char name[48];
 	name_element(member, i, name, sizeof name);
 	snprintf(within.path, sizeof within.path, "%.15s%s.", place->path, name);
@@ -81,7 +81,7 @@ static bool check_part(const struct message_member *member, int i, const uint8_t
 }
 
 static bool check_member(const struct message_table *table, const struct message_member *member, const uint8_t *message,
-			 const struct place *place)
+			 const struct message_place *place)
 {
 	int count = held(table, member, message);
 	for (int i = 0; i < count; i++) {
@@ -98,7 +98,7 @@ static bool check_member(const struct message_table *table, const struct message
 	return true;
 }
 
-static bool check(const struct message_table *table, const uint8_t *message, struct place *place)
+static bool check(const struct message_table *table, const uint8_t *message, struct message_place *place)
 {
 	for (int i = 0; i < table->count; i++)
 		if (!check_member(table, &table->member[i], message, place))
@@ -108,6 +108,6 @@ static bool check(const struct message_table *table, const uint8_t *message, str
 
 bool message_check(const struct message_table *table, const void *message, char *reason, size_t reason_size)
 {
-	struct place place = {.reason = reason, .reason_size = reason_size};
+	struct message_place place = {.reason = reason, .reason_size = reason_size};
 	return check(table, message, &place);
 }

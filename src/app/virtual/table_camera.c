@@ -168,7 +168,7 @@ static void unpack(uint32_t pixel, float weight, float rgb[3])
 }
 
 /* Bilinear; false where the picture is black or ends. */
-static bool sample(const struct picture *picture, float x, float y, float rgb[3])
+static bool sample(const struct shown_picture *picture, float x, float y, float rgb[3])
 {
 	if (!(x >= 0 && y >= 0 && x < (float)(picture->width - 1) && y < (float)(picture->height - 1)))
 		return false;
@@ -358,7 +358,7 @@ static int check(const struct config *config, char *err, size_t err_size)
 static bool take_memory(struct table_camera *camera)
 {
 	size_t count = (size_t)camera->camera.in.width * (size_t)camera->camera.in.height;
-	struct picture *picture = &camera->picture;
+	struct shown_picture *picture = &camera->picture;
 	camera->cloth = malloc(2 * count * sizeof(*camera->cloth));
 	camera->spot = malloc(2 * count * sizeof(*camera->spot));
 	camera->surface = malloc(count);
@@ -380,8 +380,8 @@ static void set_up(struct table_camera *camera, const struct config *config)
 	camera->disturbance.gain = 1;
 	camera->def = config->virtual_table;
 	camera->camera = (struct camera){config->camera, pose_of(&config->virtual_table, config->markers.height)};
-	camera->picture =
-		(struct picture){.width = config->projector.width, .height = config->projector.height, .dark = true};
+	camera->picture = (struct shown_picture){
+		.width = config->projector.width, .height = config->projector.height, .dark = true};
 	for (int i = 0; i < 3; i++) {
 		camera->projector_at[i] = PROJECTOR_AT[i] * config->table.length;
 		camera->lamp_at[i] = LAMP_AT[i] * config->table.length;

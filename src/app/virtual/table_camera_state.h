@@ -12,7 +12,7 @@ enum { LEVEL = 16384, LEVEL_MAX = 65535 };
 /* Parts of a grey level in which the sensor reckons. */
 enum { GREY = 64 };
 
-struct picture {
+struct shown_picture {
 	uint32_t *pixels; /* xRGB, rows without gaps */
 	int width, height;
 	bool dark; /* nothing to see in it */
@@ -25,7 +25,7 @@ struct table_camera {
 	struct camera camera;
 	struct table_scene scene;
 	double projector_at[3], lamp_at[3]; /* m */
-	struct picture picture;
+	struct shown_picture picture;
 	struct table_disturbance disturbance;
 	float *cloth;	  /* per pixel x, y: where its ray meets z = 0 */
 	float *spot;	  /* per pixel x, y: px of the projector that lights what is seen there */
