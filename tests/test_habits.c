@@ -18,7 +18,8 @@ static void set_up(void)
 	ball[0] = ball_at(COLOUR_WHITE, (vec2){-0.4, 0.1});
 	ball[1] = ball_at(COLOUR_RED, (vec2){0.3, 0.2});
 	ball[2] = ball_at(COLOUR_BLACK, (vec2){0.8, 0});
-	def = (struct config_virtual){.seed = 3, .think_time = 1, .habit = {.aim_time = 2, .leave_time = 0.5, .patience = 10}};
+	def = (struct config_virtual){
+		.seed = 3, .think_time = 1, .habit = {.aim_time = 2, .leave_time = 0.5, .patience = 10}};
 	view = (struct habits_view){.ball = ball, .count = 3, .at_rest = true};
 	now = 100;
 }

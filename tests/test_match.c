@@ -132,8 +132,8 @@ START_TEST(positions)
 			reds += ball[k].colour == COLOUR_RED;
 		}
 		ck_assert(reds >= 3 && reds <= 10 && count == reds + 7);
-		ck_assert_msg(table_check_balls(&table, ball, count, &first, &second, err, sizeof err) == 0, "%d: %s", i,
-			      err);
+		ck_assert_msg(table_check_balls(&table, ball, count, &first, &second, err, sizeof err) == 0, "%d: %s",
+			      i, err);
 	}
 	setting.from_break = true;
 	struct ball ball[BALL_MAX];

@@ -54,7 +54,7 @@ struct shot_case {
 	const char *section, *name;
 	int layout;
 	enum rules_on on;
-	int named;	  /* NONE: nothing was named */
+	int named;	   /* NONE: nothing was named */
 	int first, second; /* met; second at the same instant as first */
 	int potted[MANY];
 	int points, foul;
@@ -64,11 +64,21 @@ struct shot_case {
 	bool into_it; /* and is played into */
 };
 
-#define NOTHING {NONE, NONE, NONE}
-#define ONE(a) {a, NONE, NONE}
-#define TWO(a, b) {a, b, NONE}
+#define NOTHING                                                                                                        \
+	{                                                                                                              \
+		NONE, NONE, NONE                                                                                       \
+	}
+#define ONE(a)                                                                                                         \
+	{                                                                                                              \
+		a, NONE, NONE                                                                                          \
+	}
+#define TWO(a, b)                                                                                                      \
+	{                                                                                                              \
+		a, b, NONE                                                                                             \
+	}
 #define PLAIN .touching = NONE
-/* clang-format off: a table is read by its columns. */
+/* A table is read by its columns. */
+/* clang-format off */
 static const struct shot_case shot_case[] = {
 	/* Mode of Play: reds */
 	{"Mode of Play", "a red", USUAL, ON_RED, NONE, R, NONE, ONE(R), 1, 0, ON_COLOUR, PLAIN},
@@ -269,11 +279,10 @@ START_TEST(spots)
 	for (const char *letter = c->taken; *letter; letter++)
 		add(&g, COLOUR_RED, g.table.spot[COLOUR_YELLOW + (int)(strchr(letters, *letter) - letters)]);
 	ck_assert(rules_respot(&g.table, g.ball, g.count, c->colour, &pos));
-	vec2 want = c->spot != COLOUR_UNKNOWN
-			    ? g.table.spot[c->spot]
-			    : vec2_add(g.table.spot[c->colour], (vec2){2 * g.table.ball_radius, 0});
-	ck_assert_msg(vec2_dist(pos, want) < 2e-9, "%s taken: %s at %g, %g", c->taken, ball_colour_name(c->colour), pos.x,
-		      pos.y);
+	vec2 want = c->spot != COLOUR_UNKNOWN ? g.table.spot[c->spot]
+					      : vec2_add(g.table.spot[c->colour], (vec2){2 * g.table.ball_radius, 0});
+	ck_assert_msg(vec2_dist(pos, want) < 2e-9, "%s taken: %s at %g, %g", c->taken, ball_colour_name(c->colour),
+		      pos.x, pos.y);
 }
 END_TEST
 
@@ -298,7 +307,12 @@ END_TEST
 /* Several colours come back: the most valuable first. */
 START_TEST(the_most_valuable_first)
 {
-	struct shot_case c = {.layout = USUAL, .on = ON_RED, .named = NONE, .first = R, .second = NONE, .touching = NONE,
+	struct shot_case c = {.layout = USUAL,
+			      .on = ON_RED,
+			      .named = NONE,
+			      .first = R,
+			      .second = NONE,
+			      .touching = NONE,
 			      .potted = {BU, PI, NONE}};
 	struct game g;
 	struct rules_outcome out;
@@ -333,8 +347,7 @@ START_TEST(places_are_free)
 			if (taken >> (c - COLOUR_YELLOW) & 1)
 				add(&g, COLOUR_RED, g.table.spot[c]);
 		while (g.count < BALL_MAX - 2)
-			add(&g, COLOUR_RED,
-			    (vec2){random_in(&random, -1.6, 1.7), random_in(&random, -0.08, 0.08)});
+			add(&g, COLOUR_RED, (vec2){random_in(&random, -1.6, 1.7), random_in(&random, -0.08, 0.08)});
 		enum ball_colour colour = (enum ball_colour)(COLOUR_YELLOW + n % 6);
 		ck_assert(rules_respot(&g.table, g.ball, g.count, colour, &pos));
 		ck_assert(respot_is_free(&g.table, g.ball, g.count, pos));

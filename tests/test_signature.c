@@ -422,8 +422,8 @@ END_TEST
 
 static void list_actions(unsigned actions, char text[VALUE_MAX])
 {
-	static const char *const names[] = {"clear", "request", "cancel", "show", "note", "next", "previous", "repeat",
-					    "redraw", "forget"};
+	static const char *const names[] = {"clear", "request",	 "cancel", "show",   "note",
+					    "next",  "previous", "repeat", "redraw", "forget"};
 	ck_assert_uint_lt(actions, 1u << (sizeof names / sizeof *names));
 	text[0] = 0;
 	for (size_t i = 0; i < sizeof names / sizeof *names; i++)

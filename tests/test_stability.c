@@ -431,7 +431,8 @@ static void check_settled(const struct layout *layout, const struct table *table
 		vec2 p = layout->ball[i].pos;
 		for (int k = 0; k < table->cushion_count; k++)
 			ck_assert_msg(distance_to(p, &table->cushion[k]) >= r - 1e-8 ||
-					      (!jaws && !table->cushion[k].main_rail), "%s: ball %d, cushion %d", what, i, k);
+					      (!jaws && !table->cushion[k].main_rail),
+				      "%s: ball %d, cushion %d", what, i, k);
 		for (int k = 0; k < table->jaw_count; k++)
 			ck_assert_msg(vec2_dist(p, table->jaw[k].centre) >= r + table->jaw[k].radius - 1e-8 ||
 					      (!jaws && table->jaw[k].radius == 0),
@@ -515,10 +516,10 @@ START_TEST(a_ball_in_the_jaws_stays)
 	/* As seen by the camera: the blue of a rest at which the rectangle of the noses put it 15.6 mm off. It lies in a sharp tip, where
 	 * the thesis' model lets it roll. */
 	jaws = false;
-	struct layout layout = {.count = 2,
-				.cue = 0,
-				.ball = {ball_at(COLOUR_WHITE, (vec2){-0.6, -0.3}),
-					 ball_at(COLOUR_BLUE, (vec2){-0.9299, -0.3964})}};
+	struct layout layout = {
+		.count = 2,
+		.cue = 0,
+		.ball = {ball_at(COLOUR_WHITE, (vec2){-0.6, -0.3}), ball_at(COLOUR_BLUE, (vec2){-0.9299, -0.3964})}};
 	ck_assert(settle(&layout, &tables[0], 0.006));
 	ck_assert_double_lt(vec2_dist(layout.ball[1].pos, (vec2){-0.9299, -0.3964}), 0.0005);
 	ck_assert(table_check_balls(&tables[0], layout.ball, layout.count, &(int){0}, &(int){0}, NULL, 0) == 0);

@@ -8,7 +8,8 @@
 static const double PROGRAM_GRID = 1e-6;
 
 /* Name, balls, cushions, pockets, thesis motion, contact grid, lasting contacts. */
-/* clang-format off: a table is read by its columns. */
+/* A table is read by its columns. */
+/* clang-format off */
 #define MODELS(ROW)                                                                                                    \
 	ROW("thesis", BALL_MODEL_THESIS, CUSHION_MODEL_THESIS, POCKET_MODEL_CIRCLE, true, PROGRAM_GRID, false)         \
 	ROW("simple", BALL_MODEL_RESTITUTION, CUSHION_MODEL_RESTITUTION, POCKET_MODEL_CIRCLE, false, 0, false)         \

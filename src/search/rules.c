@@ -92,9 +92,9 @@ int rules_first_contact(const struct trace *trace, int cue)
 struct facts {
 	const struct ball *start; /* before the shot */
 	int count, cue;
-	int first, second; /* balls that the cue ball meets first; second: at once with it, -1 */
-	int touching;	   /* the ball that it touched before, the one on if there is one; -1 */
-	bool pushed;	   /* it was played into a ball that it touched */
+	int first, second;		    /* balls that the cue ball meets first; second: at once with it, -1 */
+	int touching;			    /* the ball that it touched before, the one on if there is one; -1 */
+	bool pushed;			    /* it was played into a ball that it touched */
 	int potted[BALL_MAX], potted_count; /* object balls */
 	bool cue_potted;
 };
@@ -218,8 +218,8 @@ static int contact_penalty(const struct rules_state *state, const struct facts *
 {
 	if (facts->pushed && !is_by_thesis(state))
 		return larger(least, value_of(&facts->start[facts->first]));
-	bool deemed = !is_by_thesis(state) && facts->touching >= 0 &&
-		      may_be_struck(state, facts, nominated, facts->touching);
+	bool deemed =
+		!is_by_thesis(state) && facts->touching >= 0 && may_be_struck(state, facts, nominated, facts->touching);
 	if (deemed || (facts->first >= 0 && state->any_first))
 		return 0;
 	if (facts->first < 0)

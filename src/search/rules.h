@@ -27,7 +27,7 @@ struct rules_outcome {
 	int points; /* for the striker, 0 when foul */
 	int foul;   /* penalty, 0 when legal */
 	bool cue_potted;
-	bool ends;		 /* the frame is over, unless the scores are level: then rules_respot_black() */
+	bool ends;		    /* the frame is over, unless the scores are level: then rules_respot_black() */
 	struct rules_state next;    /* state for the same striker's next shot */
 	struct ball ball[BALL_MAX]; /* position after respots; potted reds stay POTTED */
 	bool respot_failed;	    /* no place was found (thesis: an error) */

@@ -52,8 +52,8 @@ static void add_root_state(struct planner *planner, vec2 cue)
 	*state = (struct state){.rules = first_rules(request), .parent = NO_STATE};
 	state->rules.in_hand = false;
 	/* a profile does not bend the law: who asks for the rules and means the thesis' says so in the request */
-	state->rules.any_first = request->target == TARGET_RULES ? request->state.any_first
-								 : planner->def.profile.any_first;
+	state->rules.any_first =
+		request->target == TARGET_RULES ? request->state.any_first : planner->def.profile.any_first;
 	for (int i = 0; i < request->ball_count; i++)
 		state->ball[i] = request->ball[i];
 	state->ball[planner->task.cue] = ball_at(COLOUR_WHITE, cue);

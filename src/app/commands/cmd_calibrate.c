@@ -39,7 +39,8 @@ static const char *operand_names(void)
 	return "colours";
 }
 
-/* clang-format off: a table is read by its columns. */
+/* A table is read by its columns. */
+/* clang-format off */
 #define AT(member) offsetof(struct calibrate_line, member)
 static const struct option_row rows[] = {
 	CMD_CONFIG_ROW(struct calibrate_line),

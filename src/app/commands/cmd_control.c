@@ -14,7 +14,8 @@ enum argument { ARGUMENT_NONE, ARGUMENT_SECONDS, ARGUMENT_ID, ARGUMENT_FILE, ARG
 static const char *const wanted[] = {"no argument", "seconds", "the id of a request", "a file",
 				     "a fault and its seconds in one word"};
 
-/* clang-format off: a table is read by its columns. */
+/* A table is read by its columns. */
+/* clang-format off */
 #define CONTROLS(ROW)                                                                                                  \
 	ROW("pause", ARGUMENT_NONE)                                                                                    \
 	ROW("resume", ARGUMENT_NONE)                                                                                   \

@@ -414,7 +414,8 @@ static int run(struct demo *d)
 	return status ? status : got < wanted || d->failed;
 }
 
-/* clang-format off: a table is read by its columns. */
+/* A table is read by its columns. */
+/* clang-format off */
 #define AT(member) offsetof(struct demo_options, member)
 static const struct option_row rows[] = {
 	CMD_CONFIG_ROW(struct demo_options),

@@ -28,7 +28,8 @@ struct detection {
 	struct vision_result result;
 };
 
-/* clang-format off: a table is read by its columns. */
+/* A table is read by its columns. */
+/* clang-format off */
 #define AT(member) offsetof(struct detect_line, member)
 static const struct option_row rows[] = {
 	CMD_CONFIG_ROW(struct detect_line),

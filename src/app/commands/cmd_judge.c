@@ -6,7 +6,8 @@
 
 enum { KEEP = 5, KEEP_MAX = 60, SECONDS_MAX = 7 * 24 * 3600 }; /* s */
 
-/* clang-format off: a table is read by its columns. */
+/* A table is read by its columns. */
+/* clang-format off */
 #define AT(member) offsetof(struct judge_options, member)
 static const struct option_row rows[] = {
 	CMD_CONFIG_ROW(struct judge_options),

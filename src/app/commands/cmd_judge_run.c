@@ -29,7 +29,7 @@ struct run {
 	const char *name;    /* of the log */
 	struct kept *kept;   /* owned, kept_count from kept_first on */
 	size_t kept_first, kept_count, kept_capacity;
-	int64_t last; /* us, of the newest event */
+	int64_t last;	 /* us, of the newest event */
 	sd_event *event; /* borrowed, of --live; NULL: a log */
 	int replays;
 	bool has_truth;

@@ -45,7 +45,8 @@ static const char *start_names(void)
 	return "mid, break";
 }
 
-/* clang-format off: a table is read by its columns. */
+/* A table is read by its columns. */
+/* clang-format off */
 #define ROW(member_) .offset = offsetof(struct match_line, member_)
 static const struct option_row rows[] = {
 	CMD_CONFIG_ROW(struct match_line),

@@ -39,7 +39,8 @@ static const char *target_names(void)
 	return "any, rules, RED, YELLOW, GREEN, BROWN, BLUE, PINK, BLACK";
 }
 
-/* clang-format off: a table is read by its columns. */
+/* A table is read by its columns. */
+/* clang-format off */
 #define AT(member) offsetof(struct plan_line, member)
 #define WHOLE(key, min, max, member, text)                                                                             \
 	{                                                                                                              \

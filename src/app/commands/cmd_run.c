@@ -74,7 +74,8 @@ struct run_line {
 	const char *config, *bus;
 };
 
-/* clang-format off: a table is read by its columns. */
+/* A table is read by its columns. */
+/* clang-format off */
 static const struct option_row rows[] = {
 	CMD_CONFIG_ROW(struct run_line),
 	CMD_BUS_ROW(struct run_line),

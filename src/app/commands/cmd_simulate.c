@@ -32,7 +32,8 @@ struct run {
 
 /* ---- command line ------------------------------------------------------------------------------------------------ */
 
-/* clang-format off: a table is read by its columns. */
+/* A table is read by its columns. */
+/* clang-format off */
 #define AT(member) offsetof(struct simulate_line, member)
 #define NUMBER(key, unit, min, max, member, text)                                                                      \
 	{                                                                                                              \

@@ -12,7 +12,8 @@ struct status_line {
 	bool json;
 };
 
-/* clang-format off: a table is read by its columns. */
+/* A table is read by its columns. */
+/* clang-format off */
 #define AT(member) offsetof(struct status_line, member)
 static const struct option_row rows[] = {
 	CMD_CONFIG_ROW(struct status_line),

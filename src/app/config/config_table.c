@@ -2,7 +2,8 @@
 
 /* Every key with its unit and range in one row; docs/configuration.md and the files in config/ say the same in
  * words. */
-/* clang-format off: a table is read by its columns. */
+/* A table is read by its columns. */
+/* clang-format off */
 
 #define AT(member)	 offsetof(struct config_file, member)
 #define IN(type, member) offsetof(struct type, member)

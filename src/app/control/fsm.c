@@ -10,7 +10,8 @@ struct cell {
 	unsigned actions;
 };
 
-/* clang-format off: a table is read by its columns. */
+/* A table is read by its columns. */
+/* clang-format off */
 #define STAY {false, 0, 0}
 #define TO(state, actions) {true, FSM_##state, (actions)}
 #define CLEAR	 FSM_DO_CLEAR
@@ -87,9 +88,9 @@ const char *fsm_state_name(enum fsm_state state)
 
 const char *fsm_event_name(enum fsm_event event)
 {
-	static const char *const name[FSM_EVENT_COUNT] = {
-		"LOST", "SILENT",  "MOVING", "DOUBT", "STABLE", "SAME",	  "READY", "NONE",     "LATE",
-		"TIMEOUT", "ANEW", "PAUSE",  "RESUME", "TOGGLE", "NEXT", "PREVIOUS", "REDRAW"};
+	static const char *const name[FSM_EVENT_COUNT] = {"LOST",   "SILENT", "MOVING", "DOUBT",    "STABLE", "SAME",
+							  "READY",  "NONE",   "LATE",	"TIMEOUT",  "ANEW",   "PAUSE",
+							  "RESUME", "TOGGLE", "NEXT",	"PREVIOUS", "REDRAW"};
 	return name[event];
 }
 

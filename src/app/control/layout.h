@@ -25,7 +25,7 @@ int layout_find(const struct layout *layout, const struct ball *ball, int track)
 struct layout_limits {
 	double shift;	/* m, a ball may be moved by that much */
 	double overlap; /* m, two balls may overlap by that much */
-	bool jaws;	/* the model knows the pockets' jaw cushions and sharp tips (POCKET_MODEL_JAWS): without them a ball may roll into
+	bool jaws; /* the model knows the pockets' jaw cushions and sharp tips (POCKET_MODEL_JAWS): without them a ball may roll into
 			   one, and lie there */
 };
 

@@ -9,10 +9,11 @@ static const double TIME_SLACK = 1e-3; /* s, frames come a little early and late
 
 void stability_init(struct stability *s, const struct stability_limits *limits)
 {
-	*s = (struct stability){.limits = *limits, .anchor.cue = -1, .away = -1, .blind = -1, .verdict = STABILITY_UNSURE};
+	*s = (struct stability){
+		.limits = *limits, .anchor.cue = -1, .away = -1, .blind = -1, .verdict = STABILITY_UNSURE};
 	const double needed[STABILITY_CONDITIONS] = {
-		[STABILITY_CUE] = limits->cue_time,	 [STABILITY_STILL] = limits->still_time,
-		[STABILITY_KEPT] = limits->lost_time,	 [STABILITY_NONE_NEW] = limits->new_time,
+		[STABILITY_CUE] = limits->cue_time,	[STABILITY_STILL] = limits->still_time,
+		[STABILITY_KEPT] = limits->lost_time,	[STABILITY_NONE_NEW] = limits->new_time,
 		[STABILITY_CLEAR] = limits->clear_time,
 	};
 	for (int i = 0; i < STABILITY_CONDITIONS; i++)
@@ -197,8 +198,8 @@ enum stability_condition stability_obstacle(const struct stability *s)
 		if (!s->result[i].holds)
 			return (enum stability_condition)i;
 	/* Rest comes last: whatever else happens begins it anew. */
-	static const enum stability_condition order[] = {STABILITY_CUE, STABILITY_KEPT, STABILITY_NONE_NEW, STABILITY_CLEAR,
-							 STABILITY_STILL};
+	static const enum stability_condition order[] = {STABILITY_CUE, STABILITY_KEPT, STABILITY_NONE_NEW,
+							 STABILITY_CLEAR, STABILITY_STILL};
 	enum stability_condition worst = STABILITY_CONDITIONS;
 	double longest = TIME_SLACK;
 	for (size_t i = 0; i < sizeof order / sizeof order[0]; i++) {
@@ -219,7 +220,6 @@ const char *stability_verdict_name(enum stability_verdict verdict)
 
 const char *stability_condition_name(enum stability_condition condition)
 {
-	static const char *const name[STABILITY_CONDITIONS] = {"cue",	  "still", "kept",
-							       "none new", "clear", "all"};
+	static const char *const name[STABILITY_CONDITIONS] = {"cue", "still", "kept", "none new", "clear", "all"};
 	return name[condition];
 }

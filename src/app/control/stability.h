@@ -7,12 +7,12 @@
 #include "app/control/layout.h"
 
 enum stability_condition {
-	STABILITY_CUE,	 /* 4.9.1: the cue ball is tracked: one white ball, or the one that is where it was */
-	STABILITY_STILL, /* 4.9.2 M: nothing moves */
-	STABILITY_KEPT,	 /* 4.9.3 O: no ball is lost */
+	STABILITY_CUE,	    /* 4.9.1: the cue ball is tracked: one white ball, or the one that is where it was */
+	STABILITY_STILL,    /* 4.9.2 M: nothing moves */
+	STABILITY_KEPT,	    /* 4.9.3 O: no ball is lost */
 	STABILITY_NONE_NEW, /* 4.9.4 N: no ball is new */
-	STABILITY_CLEAR, /* 4.9.5: what is detected is what is tracked: nothing is hidden or doubted */
-	STABILITY_ALL,	 /* 4.9.6 P: all of it */
+	STABILITY_CLEAR,    /* 4.9.5: what is detected is what is tracked: nothing is hidden or doubted */
+	STABILITY_ALL,	    /* 4.9.6 P: all of it */
 	STABILITY_CONDITIONS
 };
 
@@ -38,15 +38,15 @@ enum stability_verdict {
 
 /* One frame. */
 struct stability_view {
-	double time;	/* s, of the frame; its differences count, and none counts for more than a third of what is waited for */
-	bool occluded;	/* a hand or arm is over the bed */
-	int doubted;	/* index of a ball that is hidden or in doubt, -1: none */
-	bool looking;	/* the whole frame has not been judged yet */
+	double time; /* s, of the frame; its differences count, and none counts for more than a third of what is waited for */
+	bool occluded; /* a hand or arm is over the bed */
+	int doubted;   /* index of a ball that is hidden or in doubt, -1: none */
+	bool looking;  /* the whole frame has not been judged yet */
 };
 
 /* What became of one condition at the last frame. */
 struct stability_result {
-	bool holds;   /* the predicate, for this frame */
+	bool holds; /* the predicate, for this frame */
 	double value; /* what was held against limit: m for CUE and STILL, balls for KEPT and NONE_NEW, balls or 1 for CLEAR */
 	double limit;
 	double held;   /* s for which it has held without a break */
@@ -59,10 +59,10 @@ struct stability {
 	vec2 last_cue; /* m, for telling the cue ball from other white balls */
 	int cue_track; /* its identity, 0 none */
 	bool has_cue, begun;
-	struct layout anchor; /* where the balls were when the present quiet began */
-	double time;	      /* s, of the last frame */
-	double away;	      /* s for which a ball has been away from its place; -1: none is */
-	double blind;	      /* s without calibration or white ball; -1: seen */
+	struct layout anchor;		/* where the balls were when the present quiet began */
+	double time;			/* s, of the last frame */
+	double away;			/* s for which a ball has been away from its place; -1: none is */
+	double blind;			/* s without calibration or white ball; -1: seen */
 	enum stability_verdict verdict; /* of the last frame */
 	struct stability_result result[STABILITY_CONDITIONS];
 };

@@ -32,7 +32,7 @@ struct virtual_process {
 	char name[BALL_MAX][BALL_NAME_SIZE];
 	billiard_draw_list_t list;
 	struct animation animation;
-	bool lit; /* the camera has the light of list; false: draw it anew */
+	bool lit;		  /* the camera has the light of list; false: draw it anew */
 	struct drawn_shot *drawn; /* owned: the answers of the planner */
 	struct habits habits;
 	bool placing;	 /* a hand puts down a ball */
@@ -91,7 +91,8 @@ static int seen_balls(const struct virtual_process *p, double now, struct ball o
 		return n;
 	uint64_t r = sensor_faults_random(&p->faults, FAULT_GHOST);
 	const struct table *t = &p->config.table;
-	vec2 at = {((double)(r >> 40) * 0x1p-24 - 0.5) * 0.9 * t->length, ((double)(r >> 16 & 0xffffff) * 0x1p-24 - 0.5) * 0.9 * t->width};
+	vec2 at = {((double)(r >> 40) * 0x1p-24 - 0.5) * 0.9 * t->length,
+		   ((double)(r >> 16 & 0xffffff) * 0x1p-24 - 0.5) * 0.9 * t->width};
 	struct ball ghost = ball_at((enum ball_colour)(1 + r % 7), at);
 	for (int i = 0; i < n; i++)
 		if (out[i].phase == BALL_POTTED) {
@@ -374,7 +375,8 @@ static int create_parts(struct virtual_process *p, const struct process_options 
 	int r = -ENOMEM;
 	p->table = calloc(1, sizeof *p->table);
 	p->drawn = calloc(1, sizeof *p->drawn);
-	if (!p->table || !p->drawn || image_buffer_reserve(&p->frame, p->config.camera.width, p->config.camera.height) < 0) {
+	if (!p->table || !p->drawn ||
+	    image_buffer_reserve(&p->frame, p->config.camera.width, p->config.camera.height) < 0) {
 		snprintf(err, err_size, "out of memory");
 		return r;
 	}

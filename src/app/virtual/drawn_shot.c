@@ -37,7 +37,8 @@ static struct shot shot_of(const billiard_plan_shot_t *s)
 	return (struct shot){s->angle, s->speed, s->side, s->follow, s->elevation};
 }
 
-bool drawn_shot_find(const struct drawn_shot *drawn, int64_t id, const billiard_animation_t *animation, struct shot *out)
+bool drawn_shot_find(const struct drawn_shot *drawn, int64_t id, const billiard_animation_t *animation,
+		     struct shot *out)
 {
 	int64_t first = drawn->count > DRAWN_PLANS ? drawn->count - DRAWN_PLANS : 0;
 	double best = INFINITY;

@@ -18,6 +18,7 @@ struct drawn_shot {
 void drawn_shot_plan(struct drawn_shot *drawn, const billiard_plan_t *plan);
 /* The shot of the proposal with that id: the one whose cue ball the animation moves, of all entries of all answers to it; without an
  * animation of that id the best of the newest answer. False when no answer to it is known. */
-bool drawn_shot_find(const struct drawn_shot *drawn, int64_t id, const billiard_animation_t *animation, struct shot *out);
+bool drawn_shot_find(const struct drawn_shot *drawn, int64_t id, const billiard_animation_t *animation,
+		     struct shot *out);
 
 #endif

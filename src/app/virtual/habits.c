@@ -88,7 +88,8 @@ static bool is_free(const struct habits *h, const struct habits_view *view, int 
 static void touch(const struct habits *h, const struct habits_view *view, struct habits_act *act)
 {
 	int ball = (int)(chance(h, WHIM_BALL) * view->count);
-	double far = TOUCH_LOW + (TOUCH_HIGH - TOUCH_LOW) * chance(h, WHIM_FAR), way = 6.283185307179586 * chance(h, WHIM_WAY);
+	double far = TOUCH_LOW + (TOUCH_HIGH - TOUCH_LOW) * chance(h, WHIM_FAR),
+	       way = 6.283185307179586 * chance(h, WHIM_WAY);
 	vec2 to = vec2_madd(view->ball[ball].pos, far, vec2_from_angle(way));
 	if (view->ball[ball].phase == BALL_POTTED || !is_free(h, view, ball, to))
 		return;
@@ -196,7 +197,8 @@ struct habits_act habits_tick(struct habits *h, const struct habits_view *view, 
 static struct table_arm reach(const struct habits *h, vec2 at)
 {
 	double side = at.y < 0 ? -1 : 1;
-	return (struct table_arm){.hand = true, .bridge = at, .elbow = {at.x + 0.1, side * (h->table->width / 2 + 0.35)}};
+	return (struct table_arm){
+		.hand = true, .bridge = at, .elbow = {at.x + 0.1, side * (h->table->width / 2 + 0.35)}};
 }
 
 static struct table_arm cue_arm(const struct habits *h, double back)
@@ -204,10 +206,10 @@ static struct table_arm cue_arm(const struct habits *h, double back)
 	vec2 way = vec2_from_angle(h->shot.angle);
 	double r = h->table->ball_radius;
 	return (struct table_arm){.cue = true,
-				   .hand = true,
-				   .tip = vec2_madd(h->cue, -(r + TIP_GAP + back), way),
-				   .bridge = vec2_madd(h->cue, -(r + BRIDGE), way),
-				   .elbow = vec2_madd(h->cue, -(r + BRIDGE + FOREARM), way)};
+				  .hand = true,
+				  .tip = vec2_madd(h->cue, -(r + TIP_GAP + back), way),
+				  .bridge = vec2_madd(h->cue, -(r + BRIDGE), way),
+				  .elbow = vec2_madd(h->cue, -(r + BRIDGE + FOREARM), way)};
 }
 
 struct table_arm habits_arm(const struct habits *h, const struct habits_view *view, double now)

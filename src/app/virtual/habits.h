@@ -20,9 +20,9 @@ struct habits_view {
 	const struct ball *ball;
 	int count;
 	bool at_rest;
-	int64_t proposal;	 /* drawn on the table, 0 none */
-	struct shot shot;	 /* of it */
-	const vec2 *placing;	 /* where a hand puts down a ball, NULL: nowhere */
+	int64_t proposal;    /* drawn on the table, 0 none */
+	struct shot shot;    /* of it */
+	const vec2 *placing; /* where a hand puts down a ball, NULL: nowhere */
 };
 
 /* What he does now. */
@@ -37,19 +37,19 @@ struct habits {
 	const struct table *table; /* borrowed */
 	struct config_virtual def;
 	enum habits_state state;
-	double since;	 /* s, of the state */
-	double rest;	 /* s, when the table came to rest; NAN: it moves */
-	double busy;	 /* s that he is busy */
-	int64_t seen;	 /* the proposal looked at */
-	double seen_at;	 /* s */
-	uint64_t turn;	 /* shots and rests so far: what his whims depend on */
+	double since;	  /* s, of the state */
+	double rest;	  /* s, when the table came to rest; NAN: it moves */
+	double busy;	  /* s that he is busy */
+	int64_t seen;	  /* the proposal looked at */
+	double seen_at;	  /* s */
+	uint64_t turn;	  /* shots and rests so far: what his whims depend on */
 	struct shot shot; /* aimed with */
 	vec2 cue;	  /* m, cue ball aimed at */
 	bool again;	  /* a second shot at once, when this one rests */
 	bool whim_done;	  /* of this rest */
 	bool touching;	  /* busy with a ball that will be moved */
 	bool wiping;
-	int64_t played;	  /* the last proposal that was played: it is none any more */
+	int64_t played; /* the last proposal that was played: it is none any more */
 };
 
 void habits_init(struct habits *habits, const struct table *table, const struct config_virtual *def);

@@ -44,7 +44,8 @@ static double uniform(uint64_t *state)
 }
 
 /* Adds a ball at a random place where it fits; leaves it out when none is found. */
-static int scatter_one(const struct table *table, struct ball *ball, int count, enum ball_colour colour, uint64_t *state)
+static int scatter_one(const struct table *table, struct ball *ball, int count, enum ball_colour colour,
+		       uint64_t *state)
 {
 	char reason[160];
 	for (int tries = 0; tries < 200; tries++) {

@@ -36,9 +36,9 @@ struct virtual_table {
 	struct rules_state state;
 	int64_t shots; /* played */
 	bool running;
-	double started;		     /* s, caller's clock */
-	struct player_result result; /* of the running or last shot; points and foul only at its end */
-	double place_time; /* s for a ball that a hand puts down, 0: it is there at once */
+	double started;		      /* s, caller's clock */
+	struct player_result result;  /* of the running or last shot; points and foul only at its end */
+	double place_time;	      /* s for a ball that a hand puts down, 0: it is there at once */
 	struct ball placed[BALL_MAX]; /* as they will be put down, in this order */
 	int placing[BALL_MAX];	      /* which balls those are */
 	int placing_count;

@@ -303,7 +303,8 @@ static void expose(const struct table_camera *camera, uint64_t frame, struct ima
 /* A camera that was turned a little shows nearly the same picture elsewhere. Its edge is repeated. */
 static void shift(const struct table_camera *camera, struct image *out)
 {
-	int dx = camera->disturbance.shift_x, dy = camera->disturbance.shift_y, width = out->width, height = out->height;
+	int dx = camera->disturbance.shift_x, dy = camera->disturbance.shift_y, width = out->width,
+	    height = out->height;
 	for (int k = 0; (dx || dy) && k < height; k++) {
 		int y = dy > 0 ? height - 1 - k : k, from = y - dy < 0 ? 0 : y - dy >= height ? height - 1 : y - dy;
 		uint8_t *row = out->data + y * out->stride;

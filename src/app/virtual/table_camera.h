@@ -19,10 +19,11 @@ void table_camera_light(struct table_camera *camera, const uint32_t *pixels, int
 /* What the next frames show besides the table, and what is wrong with them. */
 struct table_disturbance {
 	struct table_arm arm;
-	double gain;		/* of the exposure, 1 none, 0..32 */
+	double gain;	      /* of the exposure, 1 none, 0..32 */
 	int shift_x, shift_y; /* px that the camera was turned by, +-64 */
 };
-void table_camera_disturb(struct table_camera *camera, const struct table_disturbance *disturbance); /* NULL: nothing. Copied. */
+void table_camera_disturb(struct table_camera *camera,
+			  const struct table_disturbance *disturbance); /* NULL: nothing. Copied. */
 /* Renders a frame of the balls (finite; potted ones are not seen) into out, whose size must be that of the camera. frame:
  * seeds the noise. */
 void table_camera_render(struct table_camera *camera, const struct ball *ball, int count, uint64_t frame,

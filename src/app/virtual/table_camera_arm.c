@@ -5,10 +5,10 @@
 /* Arm and cue are capsules parallel to the bed: each pixel's ray is cut with the plane of their height. */
 
 struct limb {
-	vec2 from, to;	     /* m */
-	double radius;	     /* m */
-	double height;	     /* m above the bed */
-	float grey[3];	     /* red, green, blue, grey levels under full light */
+	vec2 from, to; /* m */
+	double radius; /* m */
+	double height; /* m above the bed */
+	float grey[3]; /* red, green, blue, grey levels under full light */
 };
 
 struct span {
@@ -88,7 +88,8 @@ static void draw_limb(struct table_camera *camera, const struct limb *limb)
 			if (share <= 0)
 				continue;
 			double across = fmin(1, d / limb->radius);
-			float light = table_camera_gain(camera, x, y) * (float)(0.55 + 0.45 * sqrt(1 - across * across));
+			float light =
+				table_camera_gain(camera, x, y) * (float)(0.55 + 0.45 * sqrt(1 - across * across));
 			for (int c = 0; c < 3; c++) {
 				uint16_t *level = &camera->work[3 * i + 2 - c];
 				float sum = (1 - share) * (float)*level +
@@ -104,7 +105,8 @@ void table_camera_draw_arm(struct table_camera *camera, const struct table_arm *
 	int n = 0;
 	if (arm->cue && vec2_dist(arm->bridge, arm->tip) > 0) {
 		vec2 back = vec2_unit(vec2_sub(arm->bridge, arm->tip));
-		limb[n++] = (struct limb){arm->tip, vec2_madd(arm->tip, CUE_LENGTH, back), CUE_RADIUS, CUE_HEIGHT, {215, 175, 115}};
+		limb[n++] = (struct limb){
+			arm->tip, vec2_madd(arm->tip, CUE_LENGTH, back), CUE_RADIUS, CUE_HEIGHT, {215, 175, 115}};
 	}
 	if (arm->hand) {
 		vec2 way = vec2_sub(arm->bridge, arm->elbow);

@@ -5,8 +5,8 @@
 
 /* Balls are drawn from the farthest to the nearest; each pixel's ray is cut with the sphere itself. */
 
-enum { RIM_SAMPLES = 8 }; /* across a pixel on a ball's rim */
-enum { BLUR_MAX = 16 };	  /* places that a moving ball is drawn at, at most */
+enum { RIM_SAMPLES = 8 };	       /* across a pixel on a ball's rim */
+enum { BLUR_MAX = 16 };		       /* places that a moving ball is drawn at, at most */
 static const double BLUR_STEP = 0.002; /* m */
 
 struct vec3 {
@@ -263,7 +263,8 @@ static void draw_moving_pixel(struct table_camera *camera, const struct sphere *
 		struct pass pass;
 		now.centre.x += t * now.vel.x;
 		now.centre.y += t * now.vel.y;
-		if (!pass_ball(&now, sub(now.centre, eye), (struct vec3){cloth.x - eye.x, cloth.y - eye.y, -eye.z}, 1 + rim, &pass))
+		if (!pass_ball(&now, sub(now.centre, eye), (struct vec3){cloth.x - eye.x, cloth.y - eye.y, -eye.z},
+			       1 + rim, &pass))
 			continue;
 		float share = (float)fmax(0, fmin(1, 0.5 + (1 - pass.distance) / (2 * rim)));
 		shade_ball(camera, &now, pass.at, pass.normal, eye, one);
@@ -275,7 +276,8 @@ static void draw_moving_pixel(struct table_camera *camera, const struct sphere *
 		return;
 	for (int c = 0; c < 3; c++)
 		light[c] /= sum;
-	blend(camera, at[1] * camera->camera.in.width + at[0], light, table_camera_gain(camera, at[0], at[1]), sum / (float)n);
+	blend(camera, at[1] * camera->camera.in.width + at[0], light, table_camera_gain(camera, at[0], at[1]),
+	      sum / (float)n);
 }
 
 static void draw_moving(struct table_camera *camera, const struct sphere *sphere, struct vec3 eye)
