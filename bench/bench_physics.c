@@ -226,10 +226,10 @@ static void bench_pots(struct report *report, const struct table *table, const c
 	check_potted(&s, 1);
 }
 
-static void bench_break(struct report *report, const char *model, const char *name)
+static void bench_break(struct report *report, const struct table *table, const char *model, const char *name)
 {
 	static struct scene s;
-	s.table = scene_snooker_table();
+	s.table = *table;
 	set_model(&s, model);
 	scene_rack(&s.table, s.ball);
 	s.count = SCENE_RACK_COUNT;
@@ -240,6 +240,25 @@ static void bench_break(struct report *report, const char *model, const char *na
 	vec2 way = vec2_sub(apex, s.ball[0].pos);
 	s.shot = (struct shot){.angle = atan2(way.y, way.x) + 0.01, .speed = 9.6};
 	report_scene(report, name, &s);
+}
+
+/* The price of a bed that is not level, by the error that its pieces of path may have. */
+static void bench_uneven(struct report *report, const struct table *level)
+{
+	static const struct {
+		double error;
+		const char *name;
+	} row[] = {{1e-3, "break22_uneven_1mm"},
+		   {1e-4, "break22_uneven_100um"},
+		   {1e-5, "break22_uneven_10um"},
+		   {1e-6, "break22_uneven_1um"}};
+	for (size_t i = 0; i < sizeof row / sizeof *row; i++) {
+		struct table t = *level;
+		t.bed = (struct bed){.slope = {1.5e-3, 1e-3}, .bowl = {5e-4, 0, 0}, .path_error = row[i].error};
+		if (table_finish(&t, NULL, 0) != 0)
+			abort();
+		bench_break(report, &t, "real", row[i].name);
+	}
 }
 
 int main(int argc, char **argv)
@@ -257,8 +276,12 @@ int main(int argc, char **argv)
 	bench_pots(report, &thesis, "real", "_real");
 	bench_pots(report, &full, "simple", "_12ft");
 	bench_pots(report, &full, "real", "_12ft_real");
-	bench_break(report, "simple", "break22");
-	bench_break(report, "real", "break22_real");
-	bench_break(report, "real-mathavan", "break22_mathavan");
+	bench_break(report, &full, "simple", "break22");
+	bench_break(report, &full, "real", "break22_real");
+	bench_break(report, &full, "real-mathavan", "break22_mathavan");
+	struct table lasting = full;
+	lasting.material.hertz_modulus = 6.4e9;
+	bench_break(report, &lasting, "real", "break22_lasting");
+	bench_uneven(report, &full);
 	return report_close(report) < 0 ? EXIT_FAILURE : EXIT_SUCCESS;
 }

@@ -352,6 +352,92 @@ START_TEST(a_pressed_pair_parts)
 }
 END_TEST
 
+/* The rule of pressing contacts by its own formula: a pair that the cloth presses parts with half the press times 2 ms or
+ * 1/500 of the time in which the cloth could take all motion, at most a fifth of the root mean square speed; energy
+ * pays. */
+static void check_press(double vel, double spin, bool capped, bool long_interval)
+{
+	struct table table = scene_box_table(3, 1.5);
+	struct model model = model_named("simple");
+	double d = 2 * table.ball_radius, g = table.material.mu_slide * table.material.gravity;
+	struct ball ball[2] = {ball_at(COLOUR_RED, (vec2){0, 0}), ball_at(COLOUR_RED, (vec2){d, 0})};
+	ball[0].vel = (vec2){vel, 0};
+	ball[0].spin[1] = spin;
+	static struct sim sim;
+	sim_init(&sim, &table, &model, ball, 2);
+	struct group group = {.contact = {{0, EVENT_BALL_BALL, 0, 1}}, .count = 1, .balls = 3};
+	collide_balls(&sim, &group);
+	contact_balls(&table, &model, &ball[0], &ball[1]);
+	double press = motion_acceleration(&ball[0], &table).x - motion_acceleration(&ball[1], &table).x;
+	double leave = ball[1].vel.x - ball[0].vel.x, r2 = table.ball_radius * table.ball_radius, energy[2] = {0, 0};
+	for (int i = 0; i < 2; i++)
+		energy[0] += vec2_norm2(ball[i].vel) + 0.4 * r2 * ball[i].spin[1] * ball[i].spin[1];
+	double rms = sqrt(energy[0]), interval = fmax(2e-3, 2e-3 * rms / g), lift = 0.5 * press * interval;
+	ck_assert(capped == (lift > 0.2 * rms));
+	ck_assert(long_interval == (interval > 2e-3));
+	lift = fmin(lift, 0.2 * rms);
+	ck_assert_double_lt(leave, lift);
+	ball[0].vel.x -= 0.5 * (lift - leave);
+	ball[1].vel.x += 0.5 * (lift - leave);
+	for (int i = 0; i < 2; i++)
+		energy[1] += vec2_norm2(ball[i].vel) + 0.4 * r2 * ball[i].spin[1] * ball[i].spin[1];
+	double k = fmin(1, sqrt(energy[0] / energy[1]));
+	ck_assert_double_eq_tol(sim.ball[0].vel.x, k * ball[0].vel.x, 1e-14);
+	ck_assert_double_eq_tol(sim.ball[1].vel.x, k * ball[1].vel.x, 1e-14);
+	ck_assert_double_eq_tol(sim.ball[0].spin[1], k * ball[0].spin[1], 1e-12);
+}
+
+START_TEST(pressing_by_its_formula)
+{
+	check_press(1e-3, 150, false, true);
+	check_press(1e-3, 20, false, false);
+	check_press(1e-4, 0.3, true, false);
+}
+END_TEST
+
+/* More than 150 contacts of an instant: each parts the balls by 1e-4 of their speed more. Topspin counts for 32. */
+START_TEST(cascades_are_bounded)
+{
+	struct table table = scene_thesis_table();
+	double d = 2 * table.ball_radius;
+	static struct sim sim;
+	struct group group = {.contact = {{0, EVENT_BALL_BALL, 0, 1}}, .count = 1, .balls = 3};
+	struct ball ball[2] = {moving((vec2){0, 0}, (vec2){1, 0}, BALL_ROLLING, &table),
+			       ball_at(COLOUR_RED, (vec2){d, 0})};
+	for (int n = 150; n <= 250; n += 50) {
+		struct model model = model_named("simple");
+		table.material.e_ball = 0;
+		sim_init(&sim, &table, &model, ball, 2);
+		sim.instant_contacts = n;
+		collide_balls(&sim, &group);
+		/* plastic balls: nothing but the lift; the rolling ball's own press is less than that of 50 contacts */
+		double rms = sqrt(0.5 + 0.4), leave = sim.ball[1].vel.x - sim.ball[0].vel.x;
+		ck_assert(n == 150 ? leave < 40e-4 * rms : fabs(leave - 1e-4 * (n - 150) * rms) < 2e-3 * leave);
+	}
+	for (int n = 32; n <= 33; n++) {
+		struct model model = model_named("thesis");
+		sim_init(&sim, &table, &model, ball, 2);
+		sim.instant_contacts = n;
+		collide_balls(&sim, &group);
+		ck_assert_double_eq_tol(sim.ball[0].vel.x, n == 32 ? 0.25 * 0.95 : 0, 1e-12);
+	}
+}
+END_TEST
+
+/* On a level bed a rolling ball that leaves a cushion, however slowly, goes as it goes: its path leads away for good. */
+START_TEST(rolling_off_a_cushion)
+{
+	struct table table = scene_box_table(3, 1.5);
+	struct model model = model_named("real");
+	static struct sim sim;
+	struct ball ball = moving((vec2){0, 0.75 - table.ball_radius}, (vec2){1, -1e-9}, BALL_ROLLING, &table);
+	sim_init(&sim, &table, &model, &ball, 1);
+	struct nose nose = table_nose(&table, (vec2){0, -1}, 1.4 * table.ball_radius);
+	collide_cushion(&sim, 0, &nose);
+	ck_assert(sim.ball[0].vel.x == 1 && sim.ball[0].vel.y == -1e-9 && sim.ball[0].phase == BALL_ROLLING);
+}
+END_TEST
+
 /* Thesis motion: who rolled rolls on along its new way, who slid slides anew without spin. */
 START_TEST(thesis_phases_after_a_contact)
 {
@@ -386,6 +472,9 @@ Suite *test_suite(void)
 	tcase_add_test(tcase, clusters);
 	tcase_add_test(tcase, what_is_one_instant);
 	tcase_add_test(tcase, a_pressed_pair_parts);
+	tcase_add_test(tcase, pressing_by_its_formula);
+	tcase_add_test(tcase, cascades_are_bounded);
+	tcase_add_test(tcase, rolling_off_a_cushion);
 	tcase_add_test(tcase, thesis_phases_after_a_contact);
 	suite_add_tcase(suite, tcase);
 	return suite;

@@ -404,6 +404,29 @@ static void mathavan_stepped(const struct table *t, double nose, struct ball *b)
 	*b = (struct ball){.vel = {vx, -vy}, .spin = {-wx, wy, -wz}};
 }
 
+/* Where the spring could not recoil in time, and for ratios that mean nothing, the limit of a stiff one: friction until the
+ * slip ends. */
+START_TEST(stronge_outside_its_range_is_stiff)
+{
+	struct random r = random_begin("stronge_outside_its_range_is_stiff");
+	static const double omega[] = {0, 0.5, 1, 2, 2.5, 50};
+	for (int i = 0; i < 2000; i++) {
+		struct table t = random_table(&r);
+		struct ball before = random_arrival(&r, (vec2){0, 1}), want = before;
+		double nose = random_nose(&r, &t);
+		t.material.stronge_omega = 1.01; /* e omega is below 1 */
+		t.material.e_cushion = 0.8;
+		HIT(contact_cushion_stronge, &t, ((vec2){0, 1}), nose, &want);
+		for (int k = 0; k < 6; k++) {
+			struct ball b = before;
+			t.material.stronge_omega = omega[k];
+			HIT(contact_cushion_stronge, &t, ((vec2){0, 1}), nose, &b);
+			ck_assert_double_le(difference(&t, &b, &want), 1e-14);
+		}
+	}
+}
+END_TEST
+
 START_TEST(mathavan_agrees_with_small_steps)
 {
 	struct random r = random_begin("mathavan_agrees_with_small_steps");
@@ -441,6 +464,7 @@ Suite *test_suite(void)
 	tcase_add_loop_test(cushions, cushions_do_not_care_about_turn_and_mirror, 0, 2);
 	tcase_add_loop_test(cushions, cushions_without_friction_are_restitution, 0, 2);
 	tcase_add_loop_test(cushions, cushion_touched_along_is_left_alone, 0, 2);
+	tcase_add_test(cushions, stronge_outside_its_range_is_stiff);
 	tcase_add_test(cushions, stronge_agrees_with_stepped_springs);
 	tcase_add_test(cushions, stronge_is_continuous_in_the_slip);
 	tcase_add_test(cushions, mathavan_agrees_with_small_steps);

@@ -221,6 +221,28 @@ START_TEST(roll_or_spin_ends_first)
 }
 END_TEST
 
+/* What an end of a phase demands holds exactly: no speed, no spin that rounding has left. */
+START_TEST(ends_are_exact)
+{
+	struct table table = scene_thesis_table();
+	struct ball b = ball_at(COLOUR_RED, (vec2){0, 0});
+	b.phase = BALL_ROLLING;
+	b.vel = (vec2){1e-17, -1e-18};
+	b.spin[2] = 1e-16;
+	motion_transition(&b, &table, EVENT_ROLLING_REST);
+	ck_assert(b.phase == BALL_REST && b.spin[2] == 0 && b.vel.x == 0 && b.spin[0] == 0 && b.spin[1] == 0);
+	for (int k = 0; k < 3; k++) {
+		b = ball_at(COLOUR_RED, (vec2){0, 0});
+		b.phase = BALL_SLIDING;
+		b.vel.x = k == 2 ? 1.01e-8 : 0.99e-8;
+		b.spin[2] = k == 1 ? 3 : 0;
+		motion_transition(&b, &table, EVENT_SLIDING_ROLLING);
+		ck_assert_int_eq(b.phase, k == 0 ? BALL_REST : k == 1 ? BALL_SPINNING : BALL_ROLLING);
+		ck_assert(k == 2 ? b.vel.x > 0 : b.vel.x == 0);
+	}
+}
+END_TEST
+
 /* The borders of rest and of rolling, a step inside and a step outside. */
 START_TEST(rest_and_roll_have_a_border)
 {
@@ -269,6 +291,7 @@ Suite *test_suite(void)
 	tcase_add_test(tcase, phases_from_velocity_and_spin);
 	tcase_add_test(tcase, time_only_goes_on);
 	tcase_add_test(tcase, roll_or_spin_ends_first);
+	tcase_add_test(tcase, ends_are_exact);
 	tcase_add_test(tcase, rest_and_roll_have_a_border);
 	suite_add_tcase(suite, tcase);
 	return suite;

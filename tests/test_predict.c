@@ -254,6 +254,52 @@ START_TEST(easy_cases_cost_no_quartic)
 }
 END_TEST
 
+/* Two rails on one line, endless without pockets: the one is named on which the ball's foot lies. */
+START_TEST(rails_in_line)
+{
+	struct table table = scene_thesis_table();
+	struct model model = {.pocket = POCKET_MODEL_NONE};
+	struct solve_count count = {0};
+	struct predictor by = {&table, &model, &count};
+	for (int k = 0; k < 4; k++) {
+		struct ball b = ball_at(COLOUR_RED, (vec2){k & 1 ? 0.4 : -0.4, 0.3 * (k & 2 ? 1 : -1)});
+		b.vel.y = k & 2 ? 2 : -2;
+		motion_roll(&b, &table);
+		struct motion m = predict_motion(&table, &b, 0);
+		struct event e = predict_own(&by, &(struct mover){&b, &m}, 0);
+		const struct cushion *c = &table.cushion[e.other];
+		ck_assert_int_eq(e.kind, EVENT_CUSHION);
+		ck_assert(fmin(c->a.x, c->b.x) <= b.pos.x && b.pos.x <= fmax(c->a.x, c->b.x) && c->a.y * b.pos.y > 0);
+	}
+}
+END_TEST
+
+/* Sharp tips are there for the realistic models only; a ball behind a two-sided cushion meets its other side. */
+START_TEST(tips_and_sides)
+{
+	struct table table = scene_thesis_table();
+	struct solve_count count = {0};
+	vec2 tip = {-0.0575, -0.4715};
+	for (int k = 0; k < 2; k++) {
+		struct model model;
+		ck_assert(model_from_name(k ? "real" : "simple", &model));
+		struct predictor by = {&table, &model, &count};
+		struct ball b = ball_at(COLOUR_WHITE, vec2_madd(tip, 0.1, vec2_from_angle(1.2)));
+		b.vel = vec2_scale(vec2_from_angle(1.2), -1.5);
+		motion_roll(&b, &table);
+		struct motion m = predict_motion(&table, &b, 0);
+		struct event e = predict_own(&by, &(struct mover){&b, &m}, 0);
+		ck_assert(k ? e.kind == EVENT_JAW : e.kind != EVENT_JAW);
+	}
+	struct cushion c = {.a = {0, 0}, .b = {1, 0}, .normal = {0, 1}, .along = {1, 0}, .span = 1};
+	for (int k = 0; k < 4; k++) {
+		c.two_sided = k & 1;
+		vec2 n = predict_cushion_normal(&c, (vec2){0.5, k & 2 ? -0.1 : 0.1});
+		ck_assert(n.x == 0 && n.y == (k == 3 ? -1 : 1));
+	}
+}
+END_TEST
+
 Suite *test_suite(void)
 {
 	Suite *suite = suite_create("predict");
@@ -262,6 +308,8 @@ Suite *test_suite(void)
 	tcase_add_test(tcase, contact_times_of_two_balls);
 	tcase_add_test(tcase, contacts_on_a_grid_come_early);
 	tcase_add_test(tcase, cushion_is_met_at_one_radius);
+	tcase_add_test(tcase, rails_in_line);
+	tcase_add_test(tcase, tips_and_sides);
 	tcase_add_test(tcase, easy_cases_cost_no_quartic);
 	suite_add_tcase(suite, tcase);
 	return suite;

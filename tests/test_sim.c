@@ -512,6 +512,37 @@ START_TEST(struck_again_while_moving)
 }
 END_TEST
 
+/* A time limit does not cut through an instant: all contacts of a group are reported. */
+START_TEST(a_limit_keeps_an_instant_whole)
+{
+	struct table table = scene_box_table(3, 1.5);
+	struct model model = model_named("simple");
+	model.pocket = POCKET_MODEL_NONE;
+	double d = 2 * table.ball_radius;
+	struct ball ball[3] = {ball_at(COLOUR_WHITE, (vec2){-d * sqrt(0.75) - 0.1, 0}),
+			       ball_at(COLOUR_RED, (vec2){0, d / 2}), ball_at(COLOUR_RED, (vec2){0, -d / 2})};
+	static struct sim sim, again;
+	static struct trace_entry entry[100];
+	struct trace trace;
+	struct event event;
+	struct shot shot = {.angle = 0, .speed = 2};
+	sim_init(&sim, &table, &model, ball, 3);
+	sim_strike(&sim, 0, &shot);
+	do
+		ck_assert(sim_step(&sim, &event));
+	while (event.kind != EVENT_BALL_BALL);
+	sim_init(&again, &table, &model, ball, 3);
+	sim_strike(&again, 0, &shot);
+	trace_init(&trace, entry, 100);
+	ck_assert_int_eq(sim_run(&again, &(struct sim_limits){sim.time, 100}, &trace), SIM_TIME_LIMIT);
+	int contacts = 0;
+	for (int i = 0; i < trace.count; i++)
+		contacts += trace.entry[i].event.kind == EVENT_BALL_BALL;
+	ck_assert_int_eq(contacts, 2);
+	ck_assert_int_eq(again.pending_count, 0);
+}
+END_TEST
+
 /* An event found a little late lies behind the present: time stands still for it, and never runs back. */
 START_TEST(time_never_runs_back)
 {
@@ -645,6 +676,7 @@ Suite *test_suite(void)
 	tcase_add_test(interface, squirt_and_its_inverse);
 	tcase_add_test(interface, limits_stop_a_run);
 	tcase_add_test(interface, struck_again_while_moving);
+	tcase_add_test(interface, a_limit_keeps_an_instant_whole);
 	tcase_add_test(interface, time_never_runs_back);
 	tcase_add_test(interface, the_hash_sees_every_number);
 	tcase_add_test(interface, energy_by_hand);
