@@ -280,6 +280,42 @@ static bool drew(void)
 	return metric_of(awaited, "items") == 1;
 }
 
+static bool lapsed(void)
+{
+	const billiard_status_t *s = service_status(awaited);
+	return s && strcmp((const char *)s->state, "lease over") == 0;
+}
+
+static bool recovered(void)
+{
+	return !lapsed();
+}
+
+static bool infinity_drew(void)
+{
+	return heard.draws > 0;
+}
+
+/* infinity is killed with a picture on the table: the projector blanks it within a second, and says why. A new one brings the light back. */
+START_TEST(the_projector_blanks_what_nobody_vouches_for)
+{
+	pid_t projector = service_start("billiard-projector");
+	pid_t infinity = service_start("billiard-infinity");
+	ck_assert(fixture_wait(bus, infinity_drew, 3));
+	double begin = clock_seconds();
+	/* Alive: never. */
+	awaited = projector;
+	ck_assert(!fixture_wait(bus, lapsed, 2));
+	kill(infinity, SIGKILL);
+	begin = clock_seconds();
+	ck_assert_int_eq(fixture_end(infinity, 2), 128 + SIGKILL);
+	ck_assert(fixture_wait(bus, lapsed, 4));
+	ck_assert_double_lt(clock_seconds() - begin, 3); /* STATUS comes once a second */
+	service_start("billiard-infinity");
+	ck_assert(fixture_wait(bus, recovered, 4));
+}
+END_TEST
+
 START_TEST(the_projector_draws_what_it_is_told)
 {
 	awaited = service_start("billiard-projector");
@@ -375,6 +411,7 @@ Suite *test_suite(void)
 	tcase_add_test(each, the_planner_answers_or_refuses);
 	tcase_add_test(each, infinity_asks_for_a_resting_table_and_draws_the_answer);
 	tcase_add_test(each, a_late_listener_gets_a_complete_picture_within_two_seconds);
+	tcase_add_test(each, the_projector_blanks_what_nobody_vouches_for);
 	tcase_add_test(each, the_projector_draws_what_it_is_told);
 	tcase_add_test(each, vision_refuses_sources_that_are_none);
 	tcase_add_test(each, vision_says_why_it_is_not_calibrated);

@@ -6,6 +6,7 @@
 #include "lcmtypes/billiard_command_t.h"
 #include "lcmtypes/billiard_draw_list_t.h"
 #include "lcmtypes/billiard_image_t.h"
+#include "lcmtypes/billiard_lease_t.h"
 #include "lcmtypes/billiard_plan_request_t.h"
 #include "lcmtypes/billiard_plan_t.h"
 #include "lcmtypes/billiard_stability_t.h"
@@ -199,6 +200,12 @@ static const struct message_member draw_list[] = {
 	MANY(billiard_draw_list_t, ys, "point_count", LIGHT),
 };
 const struct message_table message_draw_list = TABLE(draw_list);
+
+static const struct message_member lease[] = {
+	ONE(billiard_lease_t, utime, UTIME),
+	ONE(billiard_lease_t, seconds, TIME),
+};
+const struct message_table message_lease = TABLE(lease);
 
 static const struct message_member animation[] = {
 	ONE(billiard_animation_t, position, TIME),

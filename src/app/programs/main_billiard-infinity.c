@@ -7,7 +7,8 @@
 #include "app/control/controller.h"
 #include "app/process/process.h"
 
-enum { TICK_US = 50000, REPEAT_US = 1000000 };
+enum { TICK_US = 50000, REPEAT_US = 500000, LEASE_US = 250000 };
+static const double LEASE = 0.9; /* s a picture is true after the last word from here */
 
 struct infinity {
 	struct process process;
@@ -26,6 +27,12 @@ static void send_draw(struct infinity *p)
 	p->controller.draw.utime = clock_utime();
 	p->controller.draw.seq = ++p->draw_seq;
 	bus_publish(p->process.bus, "DRAW", &bus_draw_list, &p->controller.draw);
+}
+
+static void send_lease(struct infinity *p)
+{
+	billiard_lease_t lease = {.utime = clock_utime(), .seq = p->draw_seq, .seconds = LEASE};
+	bus_publish(p->process.bus, "LEASE", &bus_lease, &lease);
 }
 
 static void send_animation(struct infinity *p)
@@ -106,6 +113,13 @@ static int on_tick(sd_event_source *source, uint64_t usec, void *context)
 	return 0;
 }
 
+static int on_lease(sd_event_source *source, uint64_t usec, void *context)
+{
+	(void)source, (void)usec;
+	send_lease(context);
+	return 0;
+}
+
 static int on_repeat(sd_event_source *source, uint64_t usec, void *context)
 {
 	(void)source, (void)usec;
@@ -138,6 +152,7 @@ static int setup(struct infinity *p, const struct process_options *options)
 	    (r = bus_subscribe(p->process.bus,
 			       &(struct bus_subscription){"COMMAND", &bus_command, BUS_EACH, on_command, p})) < 0 ||
 	    (r = process_every(&p->process, TICK_US, on_tick, p)) < 0 ||
+	    (r = process_every(&p->process, LEASE_US, on_lease, p)) < 0 ||
 	    (r = process_every(&p->process, REPEAT_US, on_repeat, p)) < 0)
 		fprintf(stderr, "billiard-infinity: %s\n", strerror(-r));
 	return r;

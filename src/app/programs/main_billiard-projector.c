@@ -6,6 +6,7 @@
 #include "app/process/clock.h"
 #include "app/light/animation.h"
 #include "app/light/draw.h"
+#include "app/light/lease.h"
 #include "app/process/process.h"
 #include "app/light/render.h"
 #include "app/light/window.h"
@@ -19,6 +20,8 @@ struct projector {
 	struct window *window; /* NULL without a display */
 	billiard_draw_list_t list;
 	struct animation animation;
+	struct lease lease;
+	bool lapsed; /* what is shown is the notice that nobody vouches for a picture */
 	bool dirty;
 	int64_t pictures;
 	double work; /* s, of the last picture */
@@ -32,9 +35,28 @@ static bool on_draw(void *context, const void *message)
 	const billiard_draw_list_t *list = message;
 	if (!draw_check(list))
 		return false;
+	lease_picture(&p->lease, list->seq, clock_seconds());
 	p->list = *list;
+	p->lapsed = false;
 	p->dirty = true;
 	return true;
+}
+
+static bool on_lease(void *context, const void *message)
+{
+	struct projector *p = context;
+	lease_take(&p->lease, message, clock_seconds());
+	return true;
+}
+
+/* Nobody vouches for the picture any more: it goes, and the table says so. */
+static void end_lease(struct projector *p, double now)
+{
+	if (p->lapsed || !lease_is_over(&p->lease, now))
+		return;
+	lease_notice(&p->list, p->config.table.width);
+	p->animation = (struct animation){0};
+	p->lapsed = p->dirty = true;
 }
 
 static bool on_animation(void *context, const void *message)
@@ -83,6 +105,7 @@ static int on_frame(sd_event_source *source, uint64_t usec, void *context)
 	struct projector *p = context;
 	const char *name, *argument;
 	bool quit = false;
+	end_lease(p, clock_seconds());
 	while (p->window && (name = window_command(p->window, &argument, &quit)))
 		send_command(p, name, argument);
 	if (quit)
@@ -107,7 +130,7 @@ static void describe(void *context, struct process *process)
 	process_metric(process, "pictures", "1", (double)p->pictures);
 	process_metric(process, "work", "ms", 1e3 * p->work);
 	process_metric(process, "items", "1", p->list.item_count);
-	process_state(process, p->window ? "running" : "no display");
+	process_state(process, p->lapsed ? "lease over" : p->window ? "running" : "no display");
 }
 
 static int setup(struct projector *p, const struct process_options *options)
@@ -127,6 +150,8 @@ static int setup(struct projector *p, const struct process_options *options)
 	if ((r = render_create(&p->render, c, err, sizeof err)) < 0 ||
 	    (r = bus_subscribe(p->process.bus,
 			       &(struct bus_subscription){"DRAW", &bus_draw_list, BUS_EACH, on_draw, p})) < 0 ||
+	    (r = bus_subscribe(p->process.bus,
+			       &(struct bus_subscription){"LEASE", &bus_lease, BUS_EACH, on_lease, p})) < 0 ||
 	    (r = bus_subscribe(p->process.bus, &(struct bus_subscription){"ANIMATION", &bus_animation, BUS_EACH,
 									  on_animation, p})) < 0 ||
 	    (r = bus_subscribe(p->process.bus,

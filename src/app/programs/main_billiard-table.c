@@ -9,6 +9,7 @@
 #include "app/planner/plan_check.h"
 #include "app/light/animation.h"
 #include "app/light/draw.h"
+#include "app/light/lease.h"
 #include "app/planner/plan_message.h"
 #include "app/virtual/drawn_shot.h"
 #include "app/virtual/habits.h"
@@ -32,6 +33,8 @@ struct virtual_process {
 	char name[BALL_MAX][BALL_NAME_SIZE];
 	billiard_draw_list_t list;
 	struct animation animation;
+	struct lease lease;
+	bool lapsed;		  /* the light is the notice that nobody vouches for a picture */
 	bool lit;		  /* the camera has the light of list; false: draw it anew */
 	struct drawn_shot *drawn; /* owned: the answers of the planner */
 	struct habits habits;
@@ -243,6 +246,24 @@ static void light(struct virtual_process *p, double now)
 	p->lit = true;
 }
 
+static bool on_lease(void *context, const void *message)
+{
+	struct virtual_process *p = context;
+	lease_take(&p->lease, message, clock_seconds());
+	return true;
+}
+
+/* Nobody vouches for the picture any more: it goes, and is not played. */
+static void end_lease(struct virtual_process *p, double now)
+{
+	if (p->lapsed || !lease_is_over(&p->lease, now))
+		return;
+	lease_notice(&p->list, p->config.table.width);
+	p->animation = (struct animation){0};
+	p->lit = false;
+	p->lapsed = true;
+}
+
 static int on_frame(sd_event_source *source, uint64_t usec, void *context)
 {
 	(void)source, (void)usec;
@@ -250,6 +271,7 @@ static int on_frame(sd_event_source *source, uint64_t usec, void *context)
 	double now = clock_seconds();
 	int64_t utime = clock_utime();
 	p->frames++;
+	end_lease(p, now);
 	play(p, now);
 	if (p->table->running)
 		end_shot(p, utime, now);
@@ -278,6 +300,8 @@ static bool on_draw(void *context, const void *message)
 	const billiard_draw_list_t *list = message;
 	if (!draw_check(list))
 		return false;
+	lease_picture(&p->lease, list->seq, clock_seconds());
+	p->lapsed = false;
 	if (same_picture(&p->list, list))
 		return true;
 	p->list = *list;
@@ -396,6 +420,8 @@ static int setup(struct virtual_process *p, const struct process_options *option
 	if ((r = create_parts(p, options, err, sizeof err)) < 0 ||
 	    (r = bus_subscribe(p->process.bus,
 			       &(struct bus_subscription){"DRAW", &bus_draw_list, BUS_EACH, on_draw, p})) < 0 ||
+	    (r = bus_subscribe(p->process.bus,
+			       &(struct bus_subscription){"LEASE", &bus_lease, BUS_EACH, on_lease, p})) < 0 ||
 	    (r = bus_subscribe(p->process.bus, &(struct bus_subscription){"ANIMATION", &bus_animation, BUS_EACH,
 									  on_animation, p})) < 0 ||
 	    (r = bus_subscribe(p->process.bus, &(struct bus_subscription){"PLAN", &bus_plan, BUS_EACH, on_plan, p})) <
