@@ -50,6 +50,7 @@ printf 'A, WHITE, 0, 0\n\nB, WHITE, 300, 0\n' >"$folder/whites.txt"
 printf 'A, WHITE, 0, 0\nB, RED, 20, 0\n' >"$folder/overlap.txt"
 printf 'A, WHITE, 0, 0\nB, RED, 2000, 0\n' >"$folder/off.txt"
 printf 'R, RED, 0, 0\n' >"$folder/no-cue.txt"
+printf 'W, WHITE, 500, 250\nR, RED, 700, 350\nB, BLACK, -700, -380\n' >"$folder/colours.txt"
 sed 's/mu_roll = [0-9.]*/mu_roll = "x"/' config/thesis-table.conf >"$folder/type.conf"
 sed '/mu_slide = /d' config/thesis-table.conf >"$folder/missing.conf"
 head -c 3000 config/thesis-table.conf >"$folder/cut.conf"
@@ -215,6 +216,13 @@ refused '^/nonexistent/a-1-1.svg: No such file' plan --plot /nonexistent/a.svg "
 works '"plans":' plan --json --plans 2 --plot "$folder/plan.svg" "$folder/pot.txt"
 [ -s "$folder/plan-1-1.svg" ]
 result $? "plan --plot draws each shot"
+works '"side":0.0,"follow":0.0,"elevation_deg":0.0,"cue"' plan --json --ranking success --target RED "$folder/pot.txt"
+works '"target":"RED1".*"success":1.0,.*"value":1.*"why":"pot of the last ball"' plan --json --model real --ranking value --error-angle 0.1 --target rules --budget-nodes 3000 "$folder/pot.txt"
+works '"target":"B"' plan --json --model real --ranking value --target rules --on colour --budget-nodes 2000 "$folder/colours.txt"
+works '"target":"R"' plan --json --model real --ranking value --target rules --budget-nodes 2000 "$folder/colours.txt"
+refused 'are for --target rules' plan --target RED --on colour "$folder/pot.txt"
+refused 'found "blue", allowed any, red, colour, clearance' plan --on blue "$folder/pot.txt"
+refused 'error-angle: found "-1"' plan --error-angle -1 "$folder/pot.txt"
 
 # ---- match: the same seed and nodes, the same result at any number of games at a time
 match=(match -c config/snooker-12ft.conf --visits 2 --budget-nodes 1000 --a ranking=value --json)

@@ -18,6 +18,7 @@ void shot_export(const struct record *record, const struct ball *ball, int count
 		.success = record->success,
 		.value = NAN,
 		.leave_radius = NAN,
+		.why_ball = -1,
 		.hash = record->hash,
 	};
 	for (int i = 0; i < count; i++)

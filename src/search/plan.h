@@ -80,6 +80,19 @@ struct plan_request {
 /* Direct and via one ball, no cushions, one shot, one speed, 10 plans, tolerance of one, no budget. */
 struct plan_request plan_request_default(void);
 
+/* What speaks for a shot that was ranked by value. */
+enum plan_why {
+	WHY_UNKNOWN,  /* ranked otherwise */
+	WHY_POT,      /* the best pot; what follows is open */
+	WHY_POSITION, /* a pot that leaves one at why_ball */
+	WHY_LAST,     /* the last ball */
+	WHY_NO_POT,   /* safety: the opponent has no pot */
+	WHY_SNOOKER,  /* safety: the opponent is snookered */
+	WHY_LEAST,    /* safety: leaves the opponent as little as can be */
+	WHY_ESCAPE,   /* from a snooker to a ball on */
+	WHY_FOUL      /* nothing legal was found */
+};
+
 struct plan_shot {
 	struct shot shot;
 	struct ball start[BALL_MAX];   /* the position it is played from */
@@ -100,6 +113,8 @@ struct plan_shot {
 	double value;		 /* points of the visit less what the opponent may expect; NAN unknown */
 	vec2 leave;		 /* m, where the cue ball is meant to come to rest */
 	double leave_radius;	 /* m, half of the samples end within it; NAN: leave is unknown */
+	enum plan_why why;
+	int16_t why_ball; /* WHY_POSITION: the next ball; else -1 */
 	uint64_t hash;		 /* sim_hash at rest */
 };
 
@@ -164,6 +179,9 @@ void planner_figures(const struct planner *planner, struct plan_figures *out);
 /* From any thread: runs of requests numbered 1 to run end soon with -ECANCELED, whether they run by now or are still to
  * begin: a cancel given between the request and its run is not lost, and one that comes late ends no later run. */
 void planner_cancel(struct planner *planner, uint64_t run);
+
+/* One sentence for people, without full stop: "pot with position for the black". "" when it is unknown. Into text. */
+const char *plan_why_text(const struct plan_shot *shot, char *text, size_t size);
 
 /* Plays one planned shot again from its own start: fills trace, true when the same balls fall in the same pockets and
  * the hash is equal. */

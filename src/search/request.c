@@ -86,6 +86,36 @@ static int check_balls(const struct plan_request *request, char *err, size_t err
 	return check_cue_ball(request, err, err_size);
 }
 
+/* Nobody errs by more than this: 1 sigma and bias. */
+static const double ANGLE_MAX = 0.5, ELEVATION_MAX = 0.5; /* rad */
+static const double SHARE_MAX = 1;
+
+static int check_error(const struct plan_request *request, char *err, size_t err_size)
+{
+	const struct player_error *e = &request->error;
+	const struct {
+		const char *name;
+		double value, low, high;
+	} members[] = {
+		{"error angle", e->angle, 0, ANGLE_MAX},
+		{"error angle_bias", e->angle_bias, -ANGLE_MAX, ANGLE_MAX},
+		{"error speed", e->speed, 0, SHARE_MAX},
+		{"error speed_bias", e->speed_bias, -SHARE_MAX, SHARE_MAX},
+		{"error tip", e->tip, 0, SHARE_MAX},
+		{"error side_bias", e->side_bias, -SHARE_MAX, SHARE_MAX},
+		{"error follow_bias", e->follow_bias, -SHARE_MAX, SHARE_MAX},
+		{"error elevation", e->elevation, 0, ELEVATION_MAX},
+		{"error elevation_bias", e->elevation_bias, -ELEVATION_MAX, ELEVATION_MAX},
+	};
+	for (size_t i = 0; i < sizeof members / sizeof members[0] && request->has_error; i++)
+		if (!(members[i].value >= members[i].low && members[i].value <= members[i].high)) {
+			snprintf(err, err_size, "%s is %g, allowed %g..%g", members[i].name, members[i].value,
+				 members[i].low, members[i].high);
+			return -EINVAL;
+		}
+	return 0;
+}
+
 static int check_target(const struct plan_request *request, char *err, size_t err_size)
 {
 	if (request->target == TARGET_BALL) {
@@ -114,6 +144,8 @@ int plan_request_check(const struct table *table, const struct plan_request *req
 		rc = check_balls(request, err, err_size);
 	if (rc == 0)
 		rc = check_target(request, err, err_size);
+	if (rc == 0)
+		rc = check_error(request, err, err_size);
 	if (rc == 0)
 		rc = table_check_balls(table, request->ball, request->ball_count, &first, &second, err, err_size);
 	return rc;

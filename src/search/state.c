@@ -22,7 +22,7 @@ static void set_scene(const struct task *task, struct state *state)
 		.ball = state->ball,
 		.count = task->ball_count,
 		.cue = task->cue,
-		.named = state->rules.on == ON_COLOUR && !state->rules.any_first,
+		.named = (state->rules.on == ON_COLOUR || state->rules.free_ball) && !state->rules.any_first,
 		.rails = request->rails,
 		.balls = request->balls,
 	};

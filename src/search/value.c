@@ -106,6 +106,8 @@ static bool is_before(const struct stroke *a, const struct stroke *b)
 {
 	if (a->plies != b->plies)
 		return a->plies > b->plies;
+	if (a->left != b->left)
+		return a->left < b->left;
 	if (a->value != b->value)
 		return a->value > b->value;
 	return a->key < b->key;
@@ -131,6 +133,11 @@ const struct stroke *value_result(const struct value_search *v, int rank)
 int value_root_index(const struct value_search *v, int root)
 {
 	return v->request.root[root].index;
+}
+
+const struct estimator *value_estimator(const struct value_search *v)
+{
+	return &v->estimator;
 }
 
 uint64_t value_sims(const struct value_search *v)

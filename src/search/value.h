@@ -35,6 +35,7 @@ struct stroke {
 	double chance;	      /* of the pot; of a legal contact when there is no target */
 	double sum;	      /* of the samples' values */
 	int samples, good;    /* taken; of them legal and as meant */
+	int left;	      /* place at which it left the race for samples; 0: it has not */
 	int plies;	      /* 0: the end is estimated; 1: the next shot is searched */
 	vec2 leave;	      /* m, mean place of the cue ball at the end of good samples */
 	double leave_radius;  /* m, of the circle around leave that holds half of them */
@@ -70,6 +71,8 @@ void value_run(struct value_search *value, const struct value_hooks *hooks);
 const struct stroke *value_result(const struct value_search *value, int rank);
 /* The caller's name of a root. */
 int value_root_index(const struct value_search *value, int root);
+/* What the search believes of table, model and player. */
+const struct estimator *value_estimator(const struct value_search *value);
 /* Simulations made since value_begin. */
 uint64_t value_sims(const struct value_search *value);
 

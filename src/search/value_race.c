@@ -60,6 +60,7 @@ static void sample_item(void *context, int item, int worker)
 	/* a round begins anew: its samples are the first of the sequence for everybody */
 	struct stroke fresh = *stroke;
 	fresh.sum = 0;
+	fresh.left = 0;
 	fresh.samples = fresh.good = 0;
 	for (int i = 0; i < v->to_sample; i++) {
 		if (value_is_over(v))
@@ -88,7 +89,7 @@ static void round_of(struct value_search *v, int field, int count, bool deep)
 	pool_for(v->pool, field, sample_item, v);
 	/* those out of the race keep their place behind those in it */
 	for (int i = field; i < v->stroke_count; i++)
-		v->stroke[v->order[i]].value = fmin(v->stroke[v->order[i]].value, -500 - i);
+		v->stroke[v->order[i]].left = i;
 	value_sort(v);
 	if (v->hooks && v->hooks->improved && v->stroke[v->order[0]].key != before && !value_is_over(v))
 		v->hooks->improved(v->hooks->context);

@@ -1,6 +1,7 @@
 #include "search/worth.h"
 
 #include "search/export.h"
+#include "search/why.h"
 
 /* Simulations that a worker makes in a second, at the least: what a time budget is planned with. Those that come late
  * are cut off by the clock. */
@@ -111,6 +112,9 @@ static void export_stroke(const struct planner *planner, const struct stroke *st
 		shot->leave = stroke->leave;
 		shot->leave_radius = stroke->leave_radius;
 	}
+	const struct setting setting = {planner->def.table, &planner->def.model, from->ball, planner->task.ball_count,
+					&from->rules};
+	why_find(shot, &stroke->record, &setting, value_estimator(planner->value), &planner->work[0]);
 	plan->shot_count = 1;
 	plan->cost = shot->cost;
 }

@@ -14,11 +14,12 @@ static const double mm = 1000; /* in a metre */
 static const double degree = 180 / M_PI;
 
 struct plan_line {
-	const char *config, *model, *profile, *target, *plot, *position;
+	const char *config, *model, *profile, *ranking, *target, *on, *plot, *position;
 	int depth, rails, balls, speeds, plans, tolerances, workers; /* -1: as configured */
 	double budget_ms;					     /* negative: as configured */
 	double budget_nodes;
-	bool in_hand, json;
+	double error_angle, error_speed, error_tip, error_elevation; /* degrees, shares, degrees; negative: the profile's */
+	bool in_hand, free_ball, json;
 };
 
 struct run {
@@ -37,6 +38,16 @@ struct run {
 static const char *target_names(void)
 {
 	return "any, rules, RED, YELLOW, GREEN, BROWN, BLUE, PINK, BLACK";
+}
+
+static const char *on_names(void)
+{
+	return "any, red, colour, clearance";
+}
+
+static const char *ranking_names(void)
+{
+	return "thesis, success, value";
 }
 
 /* A table is read by its columns. */
@@ -68,6 +79,13 @@ static const struct option_row rows[] = {
 	 .value = "WHAT",
 	 .names = target_names,
 	 .help = "a colour (RED, YELLOW, ...), any, rules, or the ID of one ball; default any"},
+	{.name = "on",
+	 .type = OPTION_CHOICE,
+	 .offset = AT(on),
+	 .value = "WHAT",
+	 .names = on_names,
+	 .help = "what is on by the rules, instead of what the position says; --target rules"},
+	FLAG("free-ball", free_ball, "after a foul, snookered: any ball counts as the ball on; --target rules"),
 	WHOLE("speeds", 1, 32, speeds, "start speeds tried"),
 	WHOLE("workers", 1, PLAN_WORKERS_MAX, workers, "threads"),
 	NUMBER("budget-ms", 0, 600000, budget_ms, "time for the search (0: none)"),
@@ -86,6 +104,16 @@ static const struct option_row rows[] = {
 	 .offset = AT(profile),
 	 .value = "NAME",
 	 .help = "a player of the configuration"},
+	{.name = "ranking",
+	 .type = OPTION_CHOICE,
+	 .offset = AT(ranking),
+	 .value = "NAME",
+	 .names = ranking_names,
+	 .help = "what comes first, instead of the profile's"},
+	NUMBER("error-angle", 0, 20, error_angle, "degrees, 1 sigma of the player's direction, instead of the profile's"),
+	NUMBER("error-speed", 0, 1, error_speed, "share, 1 sigma of the speed"),
+	NUMBER("error-tip", 0, 1, error_tip, "share of the radius, 1 sigma of the tip's place"),
+	NUMBER("error-elevation", 0, 20, error_elevation, "degrees, 1 sigma of the elevation"),
 	FLAG("json", json, "one JSON object per plan, then one of figures"),
 	{.name = "plot",
 	 .type = OPTION_FILE,
@@ -139,6 +167,42 @@ static int set_target(struct run *run, const char *text)
 	return CMD_OK;
 }
 
+static double or_profile(double option, double unit, double profile)
+{
+	return option >= 0 ? option / unit : profile;
+}
+
+static void set_error(struct run *run, const struct plan_line *options)
+{
+	struct player_error *error = &run->request.error;
+	*error = run->def.profile.error;
+	error->angle = or_profile(options->error_angle, degree, error->angle);
+	error->speed = or_profile(options->error_speed, 1, error->speed);
+	error->tip = or_profile(options->error_tip, 1, error->tip);
+	error->elevation = or_profile(options->error_elevation, degree, error->elevation);
+	run->request.has_error = options->error_angle >= 0 || options->error_speed >= 0 || options->error_tip >= 0 ||
+				 options->error_elevation >= 0;
+}
+
+static const char *const on_words[] = {
+	[ON_ANY] = "any", [ON_RED] = "red", [ON_COLOUR] = "colour", [ON_CLEARANCE] = "clearance"};
+
+/* What is on, where the position alone does not tell. */
+static int set_on(struct run *run, const struct plan_line *options)
+{
+	struct rules_state *state = &run->request.state;
+	if (!options->on && !options->free_ball)
+		return CMD_OK;
+	if (options->target && strcmp(options->target, "rules") != 0)
+		return cmd_bad_input("billiard plan: --on and --free-ball are for --target rules");
+	run->request.target = TARGET_RULES;
+	state->free_ball = options->free_ball;
+	for (int on = ON_ANY; options->on && on <= ON_CLEARANCE; on++)
+		if (strcmp(options->on, on_words[on]) == 0)
+			state->on = (enum rules_on)on;
+	return CMD_OK;
+}
+
 static int or_configured(int option, int configured)
 {
 	return option >= 0 ? option : configured;
@@ -178,7 +242,10 @@ static int set_request(struct run *run, const struct plan_line *options)
 	request->budget.seconds = options->budget_ms >= 0 ? options->budget_ms / 1000 : planner->budget;
 	if (options->budget_nodes > 0 && options->budget_ms < 0)
 		request->budget.seconds = 0;
+	set_error(run, options);
 	int status = set_target(run, options->target);
+	if (status == CMD_OK)
+		status = set_on(run, options);
 	if (status == CMD_OK && plan_request_check(&run->config.table, request, err, sizeof err) < 0)
 		return cmd_bad_input("%s: %s", options->position, err);
 	return status;
@@ -212,6 +279,8 @@ static int set_def(struct run *run, const struct plan_line *options)
 			return bad_profile(&run->config, options->profile);
 		def->profile = *profile;
 	}
+	if (options->ranking)
+		plan_ranking_from_name(options->ranking, &def->profile.ranking);
 	return CMD_OK;
 }
 
@@ -245,6 +314,25 @@ static const char *ball_name(const struct run *run, int ball)
 	return ball >= 0 ? run->position.name[ball] : "";
 }
 
+/* What rankings by value know of a shot; where the tip goes. */
+static void add_value_json(const struct run *run, json_t *out, const struct plan_shot *shot)
+{
+	char why[PATH_SIZE];
+	json_object_set_new(out, "side", json_real(shot->shot.side));
+	json_object_set_new(out, "follow", json_real(shot->shot.follow));
+	json_object_set_new(out, "elevation_deg", json_real(shot->shot.elevation * degree));
+	if (isnan(shot->value))
+		return;
+	json_object_set_new(out, "value", json_real(shot->value));
+	json_object_set_new(out, "why", json_string(plan_why_text(shot, why, sizeof why)));
+	if (shot->why_ball >= 0)
+		json_object_set_new(out, "next", json_string(ball_name(run, shot->why_ball)));
+	if (!isnan(shot->leave_radius))
+		json_object_set_new(out, "leave",
+				    json_pack("{s:f,s:f,s:f}", "x", shot->leave.x * mm, "y", shot->leave.y * mm,
+					      "radius", shot->leave_radius * mm));
+}
+
 static json_t *shot_json(const struct run *run, const struct plan_shot *shot)
 {
 	json_t *via = json_array(), *potted = json_array();
@@ -270,6 +358,7 @@ static json_t *shot_json(const struct run *run, const struct plan_shot *shot)
 		json_object_set_new(out, "tolerance_speed", json_real(shot->tolerance_speed));
 		json_object_set_new(out, "success", json_real(shot->success));
 	}
+	add_value_json(run, out, shot);
 	vec2 cue = shot->start[shot->chain[0]].pos;
 	json_object_set_new(out, "cue", json_pack("[f,f]", cue.x * mm, cue.y * mm));
 	return out;
@@ -308,6 +397,10 @@ static void print_shot(const struct run *run, const struct plan_shot *shot)
 	if (!isnan(shot->success))
 		printf("  (+-%.2f deg, +-%.0f %%, success %.0f %%)", shot->tolerance_angle * degree,
 		       shot->tolerance_speed * 100, shot->success * 100);
+	if (shot->shot.side != 0 || shot->shot.follow != 0)
+		printf("  tip %+.2f side %+.2f up", shot->shot.side, shot->shot.follow);
+	if (!isnan(shot->value))
+		printf("  %+.1f points: %s", shot->value, plan_why_text(shot, via, sizeof via));
 	putchar('\n');
 }
 
@@ -375,7 +468,11 @@ int cmd_plan(int argc, char **argv)
 				    .plans = -1,
 				    .tolerances = -1,
 				    .workers = -1,
-				    .budget_ms = -1};
+				    .budget_ms = -1,
+				    .error_angle = -1,
+				    .error_speed = -1,
+				    .error_tip = -1,
+				    .error_elevation = -1};
 	int first, status = cmd_options(&plan_options, argc, argv, &options, &first);
 	if (status != CMD_OK)
 		return status < 0 ? CMD_OK : status;
