@@ -41,7 +41,7 @@ APP_VIRTUAL += habits sensor_faults table_camera_arm drawn_shot
 # programs: src/app/programs/main_NAME.c becomes build/NAME
 PROGRAMS := billiard billiard-vision billiard-planner billiard-infinity billiard-projector billiard-table
 # tests/test_NAME.c each; tests/NAME.c shared by them
-TESTS := signature message_check animation fsm stability plan_message controller planner_service planner_bus bus process supervisor frame_source services loop replay \
+TESTS := signature message_check animation fsm stability plan_message controller controller_faults planner_service planner_bus bus process supervisor frame_source services loop replay \
 	config position save options cmd status plot draw render player table_camera contact_real contact_recorded shot_file \
 	rules cost geometry frontier pool scheme candidate plan plan_thesis plan_hard plan_complete tolerance refine solutions request \
 	ball bed cluster known contact predict event inverse model motion queue roots sim sim_hard table trace \
@@ -49,7 +49,7 @@ TESTS := signature message_check animation fsm stability plan_message controller
 TESTS += rules_official match
 TESTS += seeing
 TESTS += shipped
-TEST_SHARED := harness brute_force bus_fixture service_fixture planner_client random poly_judge scenes search_scenes inverse_forward shot_compare thesis_lists vision_rig vision_scene
+TEST_SHARED := harness brute_force bus_fixture service_fixture planner_client random poly_judge scenes search_scenes inverse_forward controller_rig shot_compare thesis_lists vision_rig vision_scene
 TESTS += event_log judge_match
 TESTS += judge
 TESTS += habits sensor_faults

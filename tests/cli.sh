@@ -179,7 +179,7 @@ loop=${DATA:-../shared/data}/loop
 if [ -r "$loop/catch-1.lcmlog" ]; then
 	works '"balls":14.*"frames":89,"frames_lost":0' judge --replay --json "$loop/catch-1.lcmlog"
 	works '"shots":4,"rests":4,"requests":7,"wrong":6,.*"more_than_one_request":1,' judge --json --out "$folder/wrong" "$loop/C-471-seen-twice-4-requests.lcmlog"
-	[ "$(ls "$folder/wrong" | grep -c lcmlog)" = 6 ] && [ "$(grep -c 'rest 2: double' "$folder/wrong/README")" = 4 ]
+	[ "$(find "$folder/wrong" -name "*lcmlog*" | wc -l)" = 6 ] && [ "$(grep -c 'rest 2: double' "$folder/wrong/README")" = 4 ]
 	result $? "judge --out keeps a replay of each wrong rest"
 	refused 'holds no CAMERA' judge --replay --json "$loop/C-471-seen-twice-4-requests.lcmlog"
 	head -c 5000000 "$loop/catch-1.lcmlog" >"$folder/cut.lcmlog"

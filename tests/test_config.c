@@ -331,8 +331,7 @@ START_TEST(later_keys_have_defaults)
 	char *good = shipped(THESIS), path[64], err[ERR_SIZE];
 	ck_assert_msg(load_text(good, strlen(good), &config, path, err) == 0, "%s", err);
 	ck_assert(!config.table.bed.uneven && config.table.bed.slope.x == 0 && config.table.bed.bowl[2] == 0);
-	char *text = replaced(good, "	d_radius",
-			      "	slope = ( 1.5, -2.0 ); bowl = ( 0.5, 0.0, -1.0 );\n	d_radius");
+	char *text = replaced(good, "\td_radius", "\tslope = ( 1.5, -2.0 ); bowl = ( 0.5, 0.0, -1.0 );\n\td_radius");
 	ck_assert_msg(load_text(text, strlen(text), &config, path, err) == 0, "%s", err);
 	ck_assert(config.table.bed.uneven);
 	ck_assert_double_eq_tol(config.table.bed.slope.x, 1.5e-3, 1e-18);

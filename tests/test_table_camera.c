@@ -451,7 +451,7 @@ END_TEST
 
 START_TEST(a_moving_ball_is_blurred_around_its_place)
 {
-	double sharp[2], blurred[2];
+	double sharp[2] = {0}, blurred[2] = {0};
 	vec2 px, ahead;
 	fill_config();
 	for (int k = 0; k < 2; k++) {
