@@ -54,6 +54,7 @@ TESTS += event_log judge_match
 TESTS += judge
 TESTS += habits sensor_faults
 TESTS += lease
+TESTS += drawn_shot
 # tests that are scripts: tests/NAME.sh, called with the build folder
 TEST_SCRIPTS := cli demo planner units build borders
 # tests/NAME.c: programs of their own that a test script compiles
