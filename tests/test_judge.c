@@ -1,5 +1,6 @@
 #include "app/virtual/judge.h"
 
+#include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 
@@ -330,6 +331,41 @@ START_TEST(a_cue_ball_that_fell_is_in_hand)
 }
 END_TEST
 
+static void tell_game(const char *process, double on, double in_hand, double moving)
+{
+	billiard_status_t s = {.metric_count = 3};
+	const char *const name[] = {"ball on", "in hand", "moving"};
+	const double value[] = {on, in_hand, moving};
+	snprintf((char *)s.process, sizeof s.process, "%s", process);
+	for (int i = 0; i < 3; i++) {
+		snprintf((char *)s.metrics[i].name, sizeof s.metrics[i].name, "%s", name[i]);
+		s.metrics[i].value = value[i];
+	}
+	judge_status(judge, &s);
+}
+
+/* A red that fell after a foul: only the table itself knows. */
+START_TEST(the_tables_own_word_on_the_game_counts)
+{
+	rest(1);
+	truth(true);
+	gone[2] = true;
+	shot();
+	tell_game("billiard-table", ON_COLOUR, 0, 1); /* of a table in motion: not of this rest */
+	rest(1);
+	tell_game("billiard-table", ON_RED, 0, 0);
+	tell_game("billiard-planner", ON_COLOUR, 1, 0);
+	tell_game("billiard-table", 77, 1, 0);
+	billiard_plan_request_t r = request(ON_RED);
+	ask(&r);
+	ck_assert_int_eq(judge->report.ball_on_wrong, 0);
+	ck_assert_int_eq(judge->report.in_hand_wrong, 0);
+	r.id++, r.on = ON_COLOUR;
+	ask(&r);
+	ck_assert_int_eq(judge->report.ball_on_wrong, 1);
+}
+END_TEST
+
 /* Planned from anywhere while it is in the hand. */
 START_TEST(a_cue_ball_in_the_hand_lies_nowhere)
 {
@@ -387,6 +423,7 @@ Suite *test_suite(void)
 	tcase_add_test(run, a_ring_where_no_ball_is_any_more_is_stale);
 	tcase_add_test(run, a_pot_that_was_proposed_is_made_when_it_falls);
 	tcase_add_test(run, a_cue_ball_that_fell_is_in_hand);
+	tcase_add_test(run, the_tables_own_word_on_the_game_counts);
 	tcase_add_test(run, a_cue_ball_in_the_hand_lies_nowhere);
 	tcase_add_test(run, what_is_seen_at_rest_is_counted_frame_by_frame);
 	tcase_add_test(run, shares_of_times);

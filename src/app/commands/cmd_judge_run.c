@@ -43,6 +43,12 @@ static void feed_truth(struct run *r, int64_t now, const void *message)
 	judge_truth(r->judge, now, message);
 }
 
+static void feed_status(struct run *r, int64_t now, const void *message)
+{
+	(void)now;
+	judge_status(r->judge, message);
+}
+
 static void feed_state(struct run *r, int64_t now, const void *message)
 {
 	(void)now;
@@ -72,6 +78,7 @@ static const struct channel {
 	void (*feed)(struct run *run, int64_t now, const void *message);
 } channels[] = {
 	{"TRUTH", &bus_table_state, feed_truth},
+	{"STATUS", &bus_status, feed_status},
 	{"TABLE_STATE", &bus_table_state, feed_state},
 	{"PLAN_REQUEST", &bus_plan_request, feed_request},
 	{"PLAN", &bus_plan, feed_plan},

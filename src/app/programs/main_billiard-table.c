@@ -205,6 +205,20 @@ static void rack_again(struct virtual_process *p)
 	name_balls(p, NULL);
 }
 
+/* The state of the game is told when it changes: the judge goes by it. */
+static void describe(void *context, struct process *process)
+{
+	struct virtual_process *p = context;
+	process_metric(process, "frames", "1", (double)p->frames);
+	process_metric(process, "work", "ms", 1e3 * p->work);
+	process_metric(process, "shots", "1", (double)p->table->shots);
+	process_metric(process, "moving", "1", p->table->running);
+	process_metric(process, "ball on", "1", p->table->state.on);
+	process_metric(process, "in hand", "1", p->table->state.in_hand);
+	process_metric(process, "points", "1", p->points);
+	process_state(process, p->table->running ? "moving" : "at rest");
+}
+
 /* The end of a shot: what fell is said before the colours come back. */
 static void end_shot(struct virtual_process *p, int64_t utime, double now)
 {
@@ -215,6 +229,7 @@ static void end_shot(struct virtual_process *p, int64_t utime, double now)
 	if (player_is_done(p->table))
 		rack_again(p);
 	publish_truth(p, utime, now, false);
+	describe(p, &p->process);
 }
 
 /* What the player sees and does. */
@@ -229,8 +244,11 @@ static void play(struct virtual_process *p, double now)
 	struct habits_act act = habits_tick(&p->habits, &view, now);
 	if (act.touched >= 0)
 		player_touch(p->table, act.touched, act.to);
-	if (act.strike && player_play(p->table, &act.shot, now, err, sizeof err) < 0)
+	if (!act.strike)
+		return;
+	if (player_play(p->table, &act.shot, now, err, sizeof err) < 0)
 		process_error(&p->process, "shot refused: %s", err);
+	describe(p, &p->process);
 }
 
 /* The projector's light as it is now. A standing picture is drawn once, a running animation each frame. */
@@ -339,16 +357,6 @@ static bool on_command(void *context, const void *message)
 	if (!bus_is_for(command, "billiard-table") || strcmp(name, "fault") != 0)
 		return true;
 	return sensor_faults_command(&p->faults, argument, clock_seconds());
-}
-
-static void describe(void *context, struct process *process)
-{
-	struct virtual_process *p = context;
-	process_metric(process, "frames", "1", (double)p->frames);
-	process_metric(process, "work", "ms", 1e3 * p->work);
-	process_metric(process, "shots", "1", (double)p->table->shots);
-	process_metric(process, "points", "1", p->points);
-	process_state(process, p->table->running ? "moving" : "at rest");
 }
 
 /* ---- set-up --------------------------------------------------------------------------------------------------------- */

@@ -295,6 +295,28 @@ void judge_truth(struct judge *j, int64_t now, const billiard_table_state_t *tru
 	watch_light(j, now);
 }
 
+static bool metric(const billiard_status_t *status, const char *name, double *out)
+{
+	for (int i = 0; i < status->metric_count; i++)
+		if (strncmp((const char *)status->metrics[i].name, name, sizeof status->metrics[i].name) == 0) {
+			*out = status->metrics[i].value;
+			return true;
+		}
+	return false;
+}
+
+void judge_status(struct judge *j, const billiard_status_t *status)
+{
+	double on, in_hand, moving;
+	if (!j->at_rest || strncmp((const char *)status->process, "billiard-table", sizeof status->process) != 0 ||
+	    !metric(status, "ball on", &on) || !metric(status, "in hand", &in_hand) || !metric(status, "moving", &moving))
+		return;
+	if (moving > 0 || !(on >= ON_ANY && on <= ON_CLEARANCE))
+		return;
+	j->on = (int)on;
+	j->cue_fell = in_hand > 0;
+}
+
 /* ---- belief --------------------------------------------------------------------------------------------------------- */
 
 /* The truth of a frame: the one of that time, else the newest. */

@@ -10,6 +10,7 @@
 #include "lcmtypes/billiard_draw_list_t.h"
 #include "lcmtypes/billiard_plan_request_t.h"
 #include "lcmtypes/billiard_plan_t.h"
+#include "lcmtypes/billiard_status_t.h"
 #include "lcmtypes/billiard_table_state_t.h"
 
 enum {
@@ -81,7 +82,7 @@ struct judge {
 	int64_t rest_begin;
 	bool at_rest, rest_drawn, rest_changed, rest_told;
 	int rest_requests;
-	/* The game, as far as what fell tells it. */
+	/* The game: what the virtual table says, else as far as what fell tells it. */
 	bool cue_fell;
 	int on;			      /* enum rules_on */
 	struct judge_position before; /* when the shot began */
@@ -97,8 +98,10 @@ struct judge {
 };
 
 void judge_init(struct judge *judge, double ball_radius);
-/* TRUTH, TABLE_STATE, PLAN_REQUEST, PLAN, DRAW. */
+/* TRUTH, STATUS, TABLE_STATE, PLAN_REQUEST, PLAN, DRAW. */
 void judge_truth(struct judge *judge, int64_t now, const billiard_table_state_t *truth);
+/* The virtual table's own word on the ball on; other processes' are ignored. */
+void judge_status(struct judge *judge, const billiard_status_t *status);
 void judge_state(struct judge *judge, const billiard_table_state_t *state);
 void judge_request(struct judge *judge, int64_t now, const billiard_plan_request_t *request);
 void judge_plan(struct judge *judge, const billiard_plan_t *plan);
