@@ -289,6 +289,27 @@ START_TEST(a_ring_where_no_ball_is_any_more_is_stale)
 }
 END_TEST
 
+/* Infinity is silent: its light is on for no longer than its last lease said. */
+START_TEST(light_ends_with_its_lease)
+{
+	billiard_lease_t lease = {.seconds = 0.9};
+	rest(1);
+	billiard_plan_request_t r = request(ON_RED);
+	ask(&r);
+	draw(r.id, 0.01);
+	judge_lease(judge, now, &lease);
+	int64_t until = now + 900000;
+	truth(true);
+	now += 10000;
+	int64_t from = now - 10000;
+	for (int i = 0; i < 3; i++)
+		shot();
+	ck_assert(!judge->is_stale);
+	ck_assert_int_eq(judge->report.stale_light.count, 1);
+	ck_assert_double_eq_tol(judge->report.stale_light.max, 1e-3 * (double)(until - from), 2);
+}
+END_TEST
+
 START_TEST(a_pot_that_was_proposed_is_made_when_it_falls)
 {
 	rest(1);
@@ -421,6 +442,7 @@ Suite *test_suite(void)
 	tcase_add_test(run, a_change_of_the_first_shot_counts_once_a_rest);
 	tcase_add_test(run, light_for_a_wrong_request_is_stale_at_once);
 	tcase_add_test(run, a_ring_where_no_ball_is_any_more_is_stale);
+	tcase_add_test(run, light_ends_with_its_lease);
 	tcase_add_test(run, a_pot_that_was_proposed_is_made_when_it_falls);
 	tcase_add_test(run, a_cue_ball_that_fell_is_in_hand);
 	tcase_add_test(run, the_tables_own_word_on_the_game_counts);

@@ -71,6 +71,11 @@ static void feed_draw(struct run *r, int64_t now, const void *message)
 	judge_draw(r->judge, now, message);
 }
 
+static void feed_lease(struct run *r, int64_t now, const void *message)
+{
+	judge_lease(r->judge, now, message);
+}
+
 /* feed NULL: only kept for replays. */
 static const struct channel {
 	const char *name;
@@ -83,6 +88,7 @@ static const struct channel {
 	{"PLAN_REQUEST", &bus_plan_request, feed_request},
 	{"PLAN", &bus_plan, feed_plan},
 	{"DRAW", &bus_draw_list, feed_draw},
+	{"LEASE", &bus_lease, feed_lease},
 	{"CAMERA", &bus_image, NULL},
 };
 enum { CHANNEL_COUNT = sizeof channels / sizeof channels[0] };

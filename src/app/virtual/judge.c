@@ -194,6 +194,22 @@ static void watch_light(struct judge *j, int64_t now)
 	j->is_stale = stale;
 }
 
+/* Light that nobody vouches for any more is switched off. */
+static void expire_light(struct judge *j, int64_t now)
+{
+	if (!lease_is_over(&j->lease, 1e-6 * (double)now) || j->light.item_count == 0)
+		return;
+	draw_clear(&j->light);
+	j->light.plan_id = 0;
+	watch_light(j, (int64_t)(1e6 * j->lease.until));
+}
+
+void judge_lease(struct judge *j, int64_t now, const billiard_lease_t *lease)
+{
+	expire_light(j, now);
+	lease_take(&j->lease, lease, 1e-6 * (double)now);
+}
+
 /* ---- rests ---------------------------------------------------------------------------------------------------------- */
 
 static void end_rest(struct judge *j, int64_t now)
@@ -271,6 +287,7 @@ static void first_rest(struct judge *j, const struct judge_position *position, c
 void judge_truth(struct judge *j, int64_t now, const billiard_table_state_t *truth)
 {
 	bool first = j->truths == 0, was_moving = !first && j->truth[j->truths % JUDGE_TRUTHS].moving;
+	expire_light(j, now);
 	remember_truth(j, truth);
 	const struct judge_position *position = &j->truth[j->truths % JUDGE_TRUTHS].position;
 	if (truth->moving) {
@@ -425,7 +442,9 @@ void judge_draw(struct judge *j, int64_t now, const billiard_draw_list_t *list)
 {
 	struct judge_asked *asked = list->plan_id ? asked_of(j, list->plan_id) : NULL;
 	bool changed = !same_picture(&j->light, list);
+	expire_light(j, now);
 	j->light = *list;
+	lease_picture(&j->lease, list->seq, 1e-6 * (double)now);
 	if (asked && changed && asked->drawn.request == 0) {
 		asked->drawn = asked->best;
 	} else if (asked && changed && !j->rest_changed && !same_shot(&asked->drawn, &asked->best)) {

@@ -6,6 +6,7 @@
 
 #include <stddef.h>
 
+#include "app/light/lease.h"
 #include "app/virtual/judge_match.h"
 #include "lcmtypes/billiard_draw_list_t.h"
 #include "lcmtypes/billiard_plan_request_t.h"
@@ -91,6 +92,7 @@ struct judge {
 	struct judge_asked asked[JUDGE_REQUESTS]; /* a ring */
 	int64_t asked_count;
 	billiard_draw_list_t light;
+	struct lease lease; /* of light: whoever shows it blanks it then */
 	bool is_stale;
 	int64_t stale_since;
 	int stale_target; /* ball that the struck proposal meant, 0 none */
@@ -106,6 +108,7 @@ void judge_state(struct judge *judge, const billiard_table_state_t *state);
 void judge_request(struct judge *judge, int64_t now, const billiard_plan_request_t *request);
 void judge_plan(struct judge *judge, const billiard_plan_t *plan);
 void judge_draw(struct judge *judge, int64_t now, const billiard_draw_list_t *list);
+void judge_lease(struct judge *judge, int64_t now, const billiard_lease_t *lease);
 /* The end of the run: closes what is open. */
 void judge_finish(struct judge *judge, int64_t now);
 /* What was found wrong since the last call, for people: "place: RED ..."; false when nothing was. */
