@@ -55,6 +55,9 @@ static void play(const struct task *task, struct slot *slot, struct workspace *w
 {
 	const struct cost_profile *profile = &task->def->profile;
 	int speeds = task->request->speeds < SPEEDS_MAX ? task->request->speeds : SPEEDS_MAX;
+	/* who ranks by value opens direct pots into strokes by himself: one is enough for a first answer */
+	if (profile->ranking == RANK_VALUE && slot->node.chain_count == 2 && slot->node.rails == 0)
+		speeds = 1;
 	for (int i = 0; i < speeds && !budget_is_over(task->budget); i++) {
 		struct played *played = &slot->played[slot->played_count];
 		struct record *record = &played->record;
