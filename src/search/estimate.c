@@ -11,6 +11,7 @@ static const double COLOUR_POINTS = 5.3; /* mean of the colour that follows a re
 static const double MISS_SHARE = 0.35, SAFE_SHARE = 0.06;
 static const double SNOOKERED = -2; /* points: no ball on can be hit directly */
 static const double LEAST_GAIN = 0.2;
+static const double BEHIND = -0.2; /* cosine of the way into a pocket's middle with the line of centres */
 static const double TOUCHING = 1e-4, OVERLAP = 1e-3; /* m; share of the diameter that a camera's errors make */
 static const double EDGE = 0.9;			     /* of the diameter beside the middle: a thin contact */
 /* An error of the tip, as a share of the radius, is felt as so many radians of the aim: swerve. Measured: at half a
@@ -99,11 +100,14 @@ static bool set_ways(const struct estimator *e, vec2 white, vec2 object, struct 
 	double d = 2 * e->table->ball_radius;
 	vec2 centre = e->table->pocket[pot->pocket].centre;
 	vec2 way = vec2_unit(vec2_sub(centre, object));
+	double apart = vec2_dist(object, white);
+	if (vec2_dot(way, vec2_sub(object, white)) < BEHIND * apart)
+		return false; /* half of all pockets lie behind: they need not be looked at closer */
 	struct acceptance_window w = acceptance_at(&e->acceptance, e->table, pot->pocket, way, POT_SPEED);
 	if (w.high <= w.low)
 		return false;
 	pot->goal = vec2_madd(centre, (w.low + w.high) / 2, vec2_perp(way));
-	double far = vec2_dist(pot->goal, object), apart = vec2_dist(object, white);
+	double far = vec2_dist(pot->goal, object);
 	if (far < TOUCHING || apart < d * (1 - OVERLAP))
 		return false;
 	pot->way = vec2_scale(vec2_sub(pot->goal, object), 1 / far);
