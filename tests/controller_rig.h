@@ -13,28 +13,28 @@ extern struct controller_rig {
 	double now;		      /* s */
 	int64_t draws, cancels;
 	int64_t requests, sent, last_id; /* requests: each once; sent: repeated ones, too */
-} rig;
+} ctl;
 
 /* A white, two reds and a black at rest, nothing seen yet. */
-void rig_setup(void);
-void rig_place(int i, enum ball_colour colour, double x, double y);
+void ctl_setup(void);
+void ctl_place(int i, enum ball_colour colour, double x, double y);
 /* As from the bus: what its table does not allow reaches no controller. */
-bool rig_see(const billiard_table_state_t *message);
-bool rig_take(const billiard_plan_t *message);
-bool rig_command(const char *name, const char *argument);
+bool ctl_see(const billiard_table_state_t *message);
+bool ctl_take(const billiard_plan_t *message);
+bool ctl_command(const char *name, const char *argument);
 /* Whether what is to be sent may be. */
-bool rig_draws_well(void);
-bool rig_moves_well(void);
+bool ctl_draws_well(void);
+bool ctl_moves_well(void);
 /* What the process around it would send. */
-struct controller_output rig_flush(void);
+struct controller_output ctl_flush(void);
 /* The next frame, or so many. */
-bool rig_frame(void);
-void rig_frames(int count);
+bool ctl_frame(void);
+void ctl_frames(int count);
 /* Balls roll for some frames and stop elsewhere. */
-void rig_shot(void);
+void ctl_shot(void);
 /* An answer to the last request; borrowed until the next call. */
-billiard_plan_t *rig_answer(int8_t status, double angle);
+billiard_plan_t *ctl_answer(int8_t status, double angle);
 /* To a table with a proposal on it. */
-void rig_proposed(void);
+void ctl_proposed(void);
 
 #endif

@@ -19,26 +19,26 @@
 
 START_TEST(a_resting_table_is_asked_for_once)
 {
-	rig_frames((int)(30 * rig.config.infinity.still_time));
-	ck_assert_int_eq(rig.requests, 0);
-	rig_frames(MANY);
-	ck_assert_int_eq(rig.requests, 1);
-	ck_assert_int_eq(rig.c.fsm.state, FSM_PLANNING);
-	ck_assert_int_gt(rig.c.request.id, 0);
-	ck_assert_int_eq(rig.c.request.ball_count, 4);
-	ck_assert(rig.c.request.depth == rig.config.planner.depth && rig.c.request.rails == rig.config.planner.rails &&
-		  rig.c.request.max_balls == rig.config.planner.balls &&
-		  rig.c.request.speeds == rig.config.planner.speeds &&
-		  rig.c.request.plans == rig.config.planner.plans &&
-		  rig.c.request.budget_s == rig.config.planner.budget);
+	ctl_frames((int)(30 * ctl.config.infinity.still_time));
+	ck_assert_int_eq(ctl.requests, 0);
+	ctl_frames(MANY);
+	ck_assert_int_eq(ctl.requests, 1);
+	ck_assert_int_eq(ctl.c.fsm.state, FSM_PLANNING);
+	ck_assert_int_gt(ctl.c.request.id, 0);
+	ck_assert_int_eq(ctl.c.request.ball_count, 4);
+	ck_assert(ctl.c.request.depth == ctl.config.planner.depth && ctl.c.request.rails == ctl.config.planner.rails &&
+		  ctl.c.request.max_balls == ctl.config.planner.balls &&
+		  ctl.c.request.speeds == ctl.config.planner.speeds &&
+		  ctl.c.request.plans == ctl.config.planner.plans &&
+		  ctl.c.request.budget_s == ctl.config.planner.budget);
 	for (int i = 0; i < 4; i++)
-		ck_assert(rig.c.request.balls[i].x == rig.state.balls[i].x &&
-			  rig.c.request.balls[i].y == rig.state.balls[i].y &&
-			  rig.c.request.balls[i].colour == rig.state.balls[i].colour);
-	ck_assert_str_eq((const char *)rig.c.request.balls[2].name, "RED1");
+		ck_assert(ctl.c.request.balls[i].x == ctl.state.balls[i].x &&
+			  ctl.c.request.balls[i].y == ctl.state.balls[i].y &&
+			  ctl.c.request.balls[i].colour == ctl.state.balls[i].colour);
+	ck_assert_str_eq((const char *)ctl.c.request.balls[2].name, "RED1");
 	struct plan_request r;
 	char err[96];
-	ck_assert_msg(plan_request_from_message(&r, &rig.c.request, &rig.config.table, err, sizeof err) == 0, "%s",
+	ck_assert_msg(plan_request_from_message(&r, &ctl.c.request, &ctl.config.table, err, sizeof err) == 0, "%s",
 		      err);
 }
 END_TEST
@@ -47,10 +47,10 @@ END_TEST
 static void doubtful_frame(int8_t doubt, int i)
 {
 	billiard_vision_doubt_t message = {
-		.utime = rig.state.utime + FRAME_US, .doubt = doubt, .ball_count = rig.state.ball_count};
+		.utime = ctl.state.utime + FRAME_US, .doubt = doubt, .ball_count = ctl.state.ball_count};
 	message.ball_doubt[i] = doubt & (DOUBT_PLACE | DOUBT_COLOUR | DOUBT_HIDDEN);
-	controller_doubt(&rig.c, &message);
-	rig_frame();
+	controller_doubt(&ctl.c, &message);
+	ctl_frame();
 }
 
 /* What vision doubts is not asked for; when it does not any more, it is, once. */
@@ -58,165 +58,165 @@ START_TEST(a_position_in_doubt_is_not_asked_for)
 {
 	static const int8_t wrong[] = {DOUBT_PLACE, DOUBT_HIDDEN, DOUBT_UNJUDGED};
 	for (int k = 0; k < 3; k++) {
-		rig_setup();
+		ctl_setup();
 		for (int i = 0; i < MANY; i++)
 			doubtful_frame(wrong[k], 1);
-		ck_assert_int_eq(rig.requests, 0);
+		ck_assert_int_eq(ctl.requests, 0);
 		for (int i = 0; i < MANY; i++)
 			doubtful_frame(0, 1);
-		ck_assert_int_eq(rig.requests, 1);
+		ck_assert_int_eq(ctl.requests, 1);
 	}
 	/* A red that may be brown is a ball to be potted where any is; the cue ball must be sure. */
-	rig_setup();
-	rig.config.infinity.rules = false;
+	ctl_setup();
+	ctl.config.infinity.rules = false;
 	for (int i = 0; i < MANY; i++)
 		doubtful_frame(DOUBT_COLOUR, 0);
-	ck_assert_int_eq(rig.requests, 0);
+	ck_assert_int_eq(ctl.requests, 0);
 	for (int i = 0; i < MANY; i++)
 		doubtful_frame(DOUBT_COLOUR, 1);
-	ck_assert_int_eq(rig.requests, 1);
-	rig_setup();
-	rig.config.infinity.rules = true;
+	ck_assert_int_eq(ctl.requests, 1);
+	ctl_setup();
+	ctl.config.infinity.rules = true;
 	for (int i = 0; i < MANY; i++)
 		doubtful_frame(DOUBT_COLOUR, 1);
-	ck_assert_int_eq(rig.requests, 0);
+	ck_assert_int_eq(ctl.requests, 0);
 	/* Doubts that got lost on the way are doubts; a vision that never told any has none. */
-	rig_setup();
+	ctl_setup();
 	doubtful_frame(0, 0);
 	for (int i = 0; i < MANY; i++)
-		rig_frame();
-	ck_assert_int_eq(rig.requests, 0);
-	rig_setup();
-	rig_frames(MANY);
-	ck_assert_int_eq(rig.requests, 1);
+		ctl_frame();
+	ck_assert_int_eq(ctl.requests, 0);
+	ctl_setup();
+	ctl_frames(MANY);
+	ck_assert_int_eq(ctl.requests, 1);
 }
 END_TEST
 
 START_TEST(an_answer_is_drawn_and_stays)
 {
-	rig_proposed();
-	ck_assert(rig_draws_well());
-	ck_assert_int_eq(rig.c.draw.plan_id, rig.c.request.id);
-	ck_assert_int_gt(rig.c.draw.item_count, 0);
-	ck_assert(rig_moves_well() && rig.c.animation.keyframe_count == 1 && rig.c.animation.run);
-	int64_t before = rig.draws;
-	rig_frames(MANY);
-	ck_assert(rig.draws == before && rig.requests == 1 && rig.c.proposals == 1);
+	ctl_proposed();
+	ck_assert(ctl_draws_well());
+	ck_assert_int_eq(ctl.c.draw.plan_id, ctl.c.request.id);
+	ck_assert_int_gt(ctl.c.draw.item_count, 0);
+	ck_assert(ctl_moves_well() && ctl.c.animation.keyframe_count == 1 && ctl.c.animation.run);
+	int64_t before = ctl.draws;
+	ctl_frames(MANY);
+	ck_assert(ctl.draws == before && ctl.requests == 1 && ctl.c.proposals == 1);
 }
 END_TEST
 
 START_TEST(a_shot_takes_it_off_and_asks_anew)
 {
-	rig_proposed();
-	int64_t id = rig.c.request.id;
-	rig_shot();
-	ck_assert_int_eq(rig.c.fsm.state, FSM_SHOT);
-	ck_assert(rig.c.draw.plan_id == 0 && rig.c.draw.item_count == 0 && rig.c.animation.keyframe_count == 0);
-	rig_frames(MANY);
-	ck_assert_int_eq(rig.c.fsm.state, FSM_PLANNING);
-	ck_assert_int_gt(rig.c.request.id, id);
-	ck_assert_int_eq(rig.cancels, 0);
+	ctl_proposed();
+	int64_t id = ctl.c.request.id;
+	ctl_shot();
+	ck_assert_int_eq(ctl.c.fsm.state, FSM_SHOT);
+	ck_assert(ctl.c.draw.plan_id == 0 && ctl.c.draw.item_count == 0 && ctl.c.animation.keyframe_count == 0);
+	ctl_frames(MANY);
+	ck_assert_int_eq(ctl.c.fsm.state, FSM_PLANNING);
+	ck_assert_int_gt(ctl.c.request.id, id);
+	ck_assert_int_eq(ctl.cancels, 0);
 }
 END_TEST
 
 START_TEST(motion_while_planning_cancels)
 {
-	rig_frames(MANY);
-	int64_t id = rig.c.request.id;
-	rig_shot();
-	ck_assert_int_eq(rig.cancels, 1);
-	ck_assert(rig_take(rig_answer(PLAN_MESSAGE_OK, 0.5)));
-	ck_assert(rig.c.fsm.state == FSM_WATCHING && rig.c.draw.plan_id == 0 && rig.c.proposals == 0);
-	rig_frames(MANY);
-	ck_assert_int_gt(rig.c.request.id, id);
+	ctl_frames(MANY);
+	int64_t id = ctl.c.request.id;
+	ctl_shot();
+	ck_assert_int_eq(ctl.cancels, 1);
+	ck_assert(ctl_take(ctl_answer(PLAN_MESSAGE_OK, 0.5)));
+	ck_assert(ctl.c.fsm.state == FSM_WATCHING && ctl.c.draw.plan_id == 0 && ctl.c.proposals == 0);
+	ctl_frames(MANY);
+	ck_assert_int_gt(ctl.c.request.id, id);
 }
 END_TEST
 
 START_TEST(improved_answers_replace_repeated_ones_do_not)
 {
-	rig_proposed();
-	billiard_plan_t *plan = rig_answer(PLAN_MESSAGE_OK, 0.9);
+	ctl_proposed();
+	billiard_plan_t *plan = ctl_answer(PLAN_MESSAGE_OK, 0.9);
 	plan->sequence = 3;
 	plan->entries[0].cost = -1;
-	ck_assert(rig_take(plan));
-	ck_assert_double_eq(rig.c.plan.entries[0].shots[0].angle, 0.9);
-	plan = rig_answer(PLAN_MESSAGE_OK, 0.2);
+	ck_assert(ctl_take(plan));
+	ck_assert_double_eq(ctl.c.plan.entries[0].shots[0].angle, 0.9);
+	plan = ctl_answer(PLAN_MESSAGE_OK, 0.2);
 	plan->sequence = 2; /* late */
-	ck_assert(rig_take(plan));
-	ck_assert_double_eq(rig.c.plan.entries[0].shots[0].angle, 0.9);
-	ck_assert_int_eq(rig.c.proposals, 1);
+	ck_assert(ctl_take(plan));
+	ck_assert_double_eq(ctl.c.plan.entries[0].shots[0].angle, 0.9);
+	ck_assert_int_eq(ctl.c.proposals, 1);
 }
 END_TEST
 
 /* What is drawn first stays: only what is better by the margin takes its place. */
 START_TEST(a_proposal_changes_only_for_a_better_one)
 {
-	rig_frames(MANY);
-	billiard_plan_t *plan = rig_answer(PLAN_MESSAGE_OK, 0.5);
+	ctl_frames(MANY);
+	billiard_plan_t *plan = ctl_answer(PLAN_MESSAGE_OK, 0.5);
 	plan->entries[0].cost = 2;
-	ck_assert(rig_take(plan));
-	int64_t before = rig.draws;
-	rig_flush();
-	plan = rig_answer(PLAN_MESSAGE_OK, 0.9);
+	ck_assert(ctl_take(plan));
+	int64_t before = ctl.draws;
+	ctl_flush();
+	plan = ctl_answer(PLAN_MESSAGE_OK, 0.9);
 	plan->sequence = 1;
-	plan->entries[0].cost = 2 - 0.9 * rig.config.infinity.better_margin * 2;
-	ck_assert(rig_take(plan));
-	rig_flush();
-	ck_assert_int_eq(rig.draws, before + 1);
-	ck_assert_double_eq(rig.c.plan.entries[0].shots[0].angle, 0.5);
-	plan = rig_answer(PLAN_MESSAGE_OK, 0.9);
+	plan->entries[0].cost = 2 - 0.9 * ctl.config.infinity.better_margin * 2;
+	ck_assert(ctl_take(plan));
+	ctl_flush();
+	ck_assert_int_eq(ctl.draws, before + 1);
+	ck_assert_double_eq(ctl.c.plan.entries[0].shots[0].angle, 0.5);
+	plan = ctl_answer(PLAN_MESSAGE_OK, 0.9);
 	plan->sequence = 2;
-	plan->entries[0].cost = 2 - 1.1 * rig.config.infinity.better_margin * 2;
-	ck_assert(rig_take(plan));
-	ck_assert_double_eq(rig.c.plan.entries[0].shots[0].angle, 0.9);
+	plan->entries[0].cost = 2 - 1.1 * ctl.config.infinity.better_margin * 2;
+	ck_assert(ctl_take(plan));
+	ck_assert_double_eq(ctl.c.plan.entries[0].shots[0].angle, 0.9);
 	/* Who looks at another one is not interrupted. */
-	rig_command("next", "");
-	plan = rig_answer(PLAN_MESSAGE_OK, 0.1);
+	ctl_command("next", "");
+	plan = ctl_answer(PLAN_MESSAGE_OK, 0.1);
 	plan->sequence = 3;
 	plan->entries[0].cost = -100;
-	ck_assert(rig_take(plan));
-	ck_assert_double_eq(rig.c.plan.entries[0].shots[0].angle, 0.9);
+	ck_assert(ctl_take(plan));
+	ck_assert_double_eq(ctl.c.plan.entries[0].shots[0].angle, 0.9);
 }
 END_TEST
 
 /* One that is not final is shown when it has stayed the same for a tenth of a second. */
 START_TEST(a_proposal_is_shown_when_it_has_settled)
 {
-	rig_frames(MANY);
+	ctl_frames(MANY);
 	for (int i = 0; i < 20; i++) {
-		billiard_plan_t *plan = rig_answer(PLAN_MESSAGE_OK, 0.1 * i);
+		billiard_plan_t *plan = ctl_answer(PLAN_MESSAGE_OK, 0.1 * i);
 		plan->is_final = 0;
 		plan->sequence = i;
-		ck_assert(rig_take(plan));
-		rig_frames(2);
-		ck_assert_int_eq(rig.c.fsm.state, FSM_PLANNING);
+		ck_assert(ctl_take(plan));
+		ctl_frames(2);
+		ck_assert_int_eq(ctl.c.fsm.state, FSM_PLANNING);
 	}
-	rig_frames(2);
-	ck_assert_int_eq(rig.c.fsm.state, FSM_SHOWING);
-	ck_assert_double_eq(rig.c.plan.entries[0].shots[0].angle, 0.1 * 19);
+	ctl_frames(2);
+	ck_assert_int_eq(ctl.c.fsm.state, FSM_SHOWING);
+	ck_assert_double_eq(ctl.c.plan.entries[0].shots[0].angle, 0.1 * 19);
 	/* The last one says the same: nothing is drawn anew but what it adds. */
-	billiard_plan_t *plan = rig_answer(PLAN_MESSAGE_OK, 0.1 * 19);
+	billiard_plan_t *plan = ctl_answer(PLAN_MESSAGE_OK, 0.1 * 19);
 	plan->sequence = 20;
-	ck_assert(rig_take(plan));
-	ck_assert(rig.c.plan.is_final && rig.c.proposals == 1);
+	ck_assert(ctl_take(plan));
+	ck_assert(ctl.c.plan.is_final && ctl.c.proposals == 1);
 }
 END_TEST
 
 START_TEST(no_plan_is_said_on_the_table)
 {
-	rig_frames(MANY);
-	billiard_plan_t *plan = rig_answer(PLAN_MESSAGE_NONE, 0);
+	ctl_frames(MANY);
+	billiard_plan_t *plan = ctl_answer(PLAN_MESSAGE_NONE, 0);
 	text_set(plan->reason, sizeof plan->reason, "no shot found");
-	ck_assert(rig_take(plan));
-	ck_assert_int_eq(rig.c.fsm.state, FSM_SHOWING);
-	ck_assert_str_eq(rig.c.drawn_note, "no shot found");
-	ck_assert(rig_command("halo", ""));
-	ck_assert_str_eq(rig.c.drawn_note, "no shot found");
-	rig_command("next", "");
-	rig_command("previous", "");
-	ck_assert_int_eq(rig.c.draw.plan_id, 0);
-	rig_frames(MANY);
-	ck_assert_int_eq(rig.requests, 1);
+	ck_assert(ctl_take(plan));
+	ck_assert_int_eq(ctl.c.fsm.state, FSM_SHOWING);
+	ck_assert_str_eq(ctl.c.drawn_note, "no shot found");
+	ck_assert(ctl_command("halo", ""));
+	ck_assert_str_eq(ctl.c.drawn_note, "no shot found");
+	ctl_command("next", "");
+	ctl_command("previous", "");
+	ck_assert_int_eq(ctl.c.draw.plan_id, 0);
+	ctl_frames(MANY);
+	ck_assert_int_eq(ctl.requests, 1);
 }
 END_TEST
 
@@ -224,73 +224,73 @@ END_TEST
 
 START_TEST(pause_and_resume)
 {
-	rig_proposed();
-	ck_assert(rig_command("pause", ""));
-	ck_assert(rig.c.fsm.state == FSM_PAUSED && rig.c.draw.plan_id == 0);
-	rig_frames(MANY);
-	ck_assert_int_eq(rig.requests, 1);
-	ck_assert(rig_command("resume", ""));
-	rig_frames(MANY);
-	ck_assert(rig.c.fsm.state == FSM_PLANNING && rig.requests == 2);
-	ck_assert(rig_command("infinity", ""));
-	ck_assert(rig.c.fsm.state == FSM_PAUSED && rig.cancels == 1);
+	ctl_proposed();
+	ck_assert(ctl_command("pause", ""));
+	ck_assert(ctl.c.fsm.state == FSM_PAUSED && ctl.c.draw.plan_id == 0);
+	ctl_frames(MANY);
+	ck_assert_int_eq(ctl.requests, 1);
+	ck_assert(ctl_command("resume", ""));
+	ctl_frames(MANY);
+	ck_assert(ctl.c.fsm.state == FSM_PLANNING && ctl.requests == 2);
+	ck_assert(ctl_command("infinity", ""));
+	ck_assert(ctl.c.fsm.state == FSM_PAUSED && ctl.cancels == 1);
 }
 END_TEST
 
 START_TEST(next_and_previous_go_round)
 {
-	rig_proposed();
-	ck_assert_int_eq(rig.c.animation.keyframe_count, 1);
-	double first = rig.c.animation.keyframes[0].vx;
-	rig_command("next", "");
-	ck_assert_int_eq(rig.c.entry, 1);
-	ck_assert_double_ne(rig.c.animation.keyframes[0].vx, first);
-	rig_command("next", "");
-	ck_assert_int_eq(rig.c.entry, 0);
-	rig_command("previous", "");
-	ck_assert_int_eq(rig.c.entry, 1);
+	ctl_proposed();
+	ck_assert_int_eq(ctl.c.animation.keyframe_count, 1);
+	double first = ctl.c.animation.keyframes[0].vx;
+	ctl_command("next", "");
+	ck_assert_int_eq(ctl.c.entry, 1);
+	ck_assert_double_ne(ctl.c.animation.keyframes[0].vx, first);
+	ctl_command("next", "");
+	ck_assert_int_eq(ctl.c.entry, 0);
+	ctl_command("previous", "");
+	ck_assert_int_eq(ctl.c.entry, 1);
 }
 END_TEST
 
 START_TEST(the_animation_stops_seeks_and_restarts)
 {
-	rig_proposed();
-	rig.now += 0.5;
-	rig_command("animation-stop", "");
-	ck_assert_int_eq(rig.c.animation.run, 0);
-	ck_assert_double_eq_tol(rig.c.animation.position, 0.5 * rig.config.infinity.animation_rate, 1e-9);
-	rig_command("animation-seek", "1");
-	ck_assert_double_eq_tol(rig.c.animation.position, 1.5, 1e-9);
-	rig_command("animation-seek", "1000000");
-	ck_assert_double_eq(rig.c.animation.position, 2);
-	rig_command("animation-seek", "-99");
-	ck_assert_double_eq(rig.c.animation.position, 0);
-	ck_assert(!rig_command("animation-seek", "nan") && !rig_command("animation-seek", "") &&
-		  !rig_command("animation-nonsense", ""));
-	rig_command("animation-stop", "");
-	rig.now += 0.25;
-	rig_command("animation-seek", "0.5");
-	ck_assert_double_eq_tol(rig.c.animation.position, 0.75, 1e-9);
-	ck_assert(rig_moves_well());
-	rig_command("animation-restart", "");
-	ck_assert(rig.c.animation.position == 0 && rig.c.animation.run);
-	rig_command("animation", "");
-	ck_assert_int_eq(rig.c.animation.keyframe_count, 0);
-	rig_command("animation", "");
-	ck_assert_int_eq(rig.c.animation.keyframe_count, 1);
+	ctl_proposed();
+	ctl.now += 0.5;
+	ctl_command("animation-stop", "");
+	ck_assert_int_eq(ctl.c.animation.run, 0);
+	ck_assert_double_eq_tol(ctl.c.animation.position, 0.5 * ctl.config.infinity.animation_rate, 1e-9);
+	ctl_command("animation-seek", "1");
+	ck_assert_double_eq_tol(ctl.c.animation.position, 1.5, 1e-9);
+	ctl_command("animation-seek", "1000000");
+	ck_assert_double_eq(ctl.c.animation.position, 2);
+	ctl_command("animation-seek", "-99");
+	ck_assert_double_eq(ctl.c.animation.position, 0);
+	ck_assert(!ctl_command("animation-seek", "nan") && !ctl_command("animation-seek", "") &&
+		  !ctl_command("animation-nonsense", ""));
+	ctl_command("animation-stop", "");
+	ctl.now += 0.25;
+	ctl_command("animation-seek", "0.5");
+	ck_assert_double_eq_tol(ctl.c.animation.position, 0.75, 1e-9);
+	ck_assert(ctl_moves_well());
+	ctl_command("animation-restart", "");
+	ck_assert(ctl.c.animation.position == 0 && ctl.c.animation.run);
+	ctl_command("animation", "");
+	ck_assert_int_eq(ctl.c.animation.keyframe_count, 0);
+	ctl_command("animation", "");
+	ck_assert_int_eq(ctl.c.animation.keyframe_count, 1);
 }
 END_TEST
 
 START_TEST(commands_for_others_are_left_to_them)
 {
-	rig_proposed();
+	ctl_proposed();
 	billiard_command_t m = {.utime = 1};
 	text_set(m.name, sizeof m.name, "pause");
 	text_set(m.target, sizeof m.target, "billiard-vision");
-	ck_assert(controller_command(&rig.c, &m, rig.now));
-	ck_assert_int_eq(rig.c.fsm.state, FSM_SHOWING);
-	ck_assert(rig_command("snapshot", "x.png") && rig_command("", "") && rig_command("cancel", "5"));
-	ck_assert_int_eq(rig.c.fsm.state, FSM_SHOWING);
+	ck_assert(controller_command(&ctl.c, &m, ctl.now));
+	ck_assert_int_eq(ctl.c.fsm.state, FSM_SHOWING);
+	ck_assert(ctl_command("snapshot", "x.png") && ctl_command("", "") && ctl_command("cancel", "5"));
+	ck_assert_int_eq(ctl.c.fsm.state, FSM_SHOWING);
 }
 END_TEST
 
@@ -313,30 +313,30 @@ static uint64_t storm(uint64_t seed)
 		"infinity", "animation", "animation-stop", "animation-restart", "cancel", "x"};
 	struct random random = {seed};
 	uint64_t h = 1469598103934665603u;
-	rig_setup();
+	ctl_setup();
 	for (int i = 0; i < 4000; i++) {
 		unsigned what = (unsigned)(random_u64(&random) % 40);
 		if (what == 0)
-			rig_command(commands[random_u64(&random) % (sizeof commands / sizeof commands[0])], "0.5");
+			ctl_command(commands[random_u64(&random) % (sizeof commands / sizeof commands[0])], "0.5");
 		else if (what == 1)
-			rig_shot();
+			ctl_shot();
 		else if (what == 2)
-			rig_take(rig_answer((int8_t)(random_u64(&random) % 6), random_in(&random, -4, 4)));
+			ctl_take(ctl_answer((int8_t)(random_u64(&random) % 6), random_in(&random, -4, 4)));
 		else if (what == 3)
-			rig.state.occluded = !rig.state.occluded;
+			ctl.state.occluded = !ctl.state.occluded;
 		else if (what == 4)
-			rig.state.calibration = (int8_t)(random_u64(&random) % 3);
+			ctl.state.calibration = (int8_t)(random_u64(&random) % 3);
 		else if (what == 5)
-			((uint8_t *)&rig.state.balls)[random_u64(&random) % sizeof rig.state.balls[0]] ^=
+			((uint8_t *)&ctl.state.balls)[random_u64(&random) % sizeof ctl.state.balls[0]] ^=
 				(uint8_t)random_u64(&random);
 		else if (what == 6)
-			rig_place(0, COLOUR_WHITE, random_in(&random, -0.9, 0.9), random_in(&random, -0.4, 0.4));
-		rig_frame();
-		ck_assert(rig_draws_well());
-		ck_assert(rig_moves_well());
-		h = hash(h, &rig.c.draw, sizeof rig.c.draw);
-		h = hash(h, &rig.c.animation, sizeof rig.c.animation);
-		h = hash(h, &rig.c.request, sizeof rig.c.request);
+			ctl_place(0, COLOUR_WHITE, random_in(&random, -0.9, 0.9), random_in(&random, -0.4, 0.4));
+		ctl_frame();
+		ck_assert(ctl_draws_well());
+		ck_assert(ctl_moves_well());
+		h = hash(h, &ctl.c.draw, sizeof ctl.c.draw);
+		h = hash(h, &ctl.c.animation, sizeof ctl.c.animation);
+		h = hash(h, &ctl.c.request, sizeof ctl.c.request);
 	}
 	return h;
 }
@@ -348,20 +348,20 @@ START_TEST(storms_are_survived_and_repeatable)
 		uint64_t seed = random_u64(&random);
 		ck_assert_uint_eq(storm(seed), storm(seed));
 		/* Afterwards a calm table gets its proposal. */
-		billiard_table_state_t spoiled = rig.state;
+		billiard_table_state_t spoiled = ctl.state;
 		struct controller *survivor = malloc(sizeof *survivor);
 		ck_assert_ptr_nonnull(survivor);
-		*survivor = rig.c;
-		double then = rig.now;
-		rig_setup();
-		rig.c = *survivor;
+		*survivor = ctl.c;
+		double then = ctl.now;
+		ctl_setup();
+		ctl.c = *survivor;
 		free(survivor);
-		rig.state.utime = spoiled.utime;
-		rig.now = then;
-		rig_command("resume", "");
-		rig_shot();
-		rig_frames(MANY);
-		ck_assert_int_eq(rig.c.fsm.state, FSM_PLANNING);
+		ctl.state.utime = spoiled.utime;
+		ctl.now = then;
+		ctl_command("resume", "");
+		ctl_shot();
+		ctl_frames(MANY);
+		ck_assert_int_eq(ctl.c.fsm.state, FSM_PLANNING);
 	}
 }
 END_TEST
@@ -370,7 +370,7 @@ Suite *test_suite(void)
 {
 	Suite *suite = suite_create("controller");
 	TCase *way = tcase_create("proposals");
-	tcase_add_checked_fixture(way, rig_setup, NULL);
+	tcase_add_checked_fixture(way, ctl_setup, NULL);
 	tcase_add_test(way, a_resting_table_is_asked_for_once);
 	tcase_add_test(way, a_position_in_doubt_is_not_asked_for);
 	tcase_add_test(way, an_answer_is_drawn_and_stays);
@@ -382,14 +382,14 @@ Suite *test_suite(void)
 	tcase_add_test(way, no_plan_is_said_on_the_table);
 	suite_add_tcase(suite, way);
 	TCase *commands = tcase_create("commands");
-	tcase_add_checked_fixture(commands, rig_setup, NULL);
+	tcase_add_checked_fixture(commands, ctl_setup, NULL);
 	tcase_add_test(commands, pause_and_resume);
 	tcase_add_test(commands, next_and_previous_go_round);
 	tcase_add_test(commands, the_animation_stops_seeks_and_restarts);
 	tcase_add_test(commands, commands_for_others_are_left_to_them);
 	suite_add_tcase(suite, commands);
 	TCase *storms = tcase_create("storms");
-	tcase_add_checked_fixture(storms, rig_setup, NULL);
+	tcase_add_checked_fixture(storms, ctl_setup, NULL);
 	tcase_set_timeout(storms, 60);
 	tcase_add_test(storms, storms_are_survived_and_repeatable);
 	suite_add_tcase(suite, storms);
