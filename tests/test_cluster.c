@@ -330,6 +330,36 @@ START_TEST(clusters_keep_momentum)
 }
 END_TEST
 
+/* Of contacts that belong together the first is reported first, whatever the balls' numbers: who was hit first decides a
+ * foul. */
+START_TEST(the_first_hit_is_reported_first)
+{
+	struct table t = table_with_time();
+	struct model model = real_model();
+	double d = 2 * t.ball_radius, half = 0.6 * d;
+	for (int first = 1; first <= 2; first++) {
+		/* the cue ball's way is nearer to the one by 0.1 mm */
+		double across = first == 1 ? 1e-4 : -1e-4;
+		struct ball ball[4] = {ball_at(COLOUR_WHITE, (vec2){-0.1, across}),
+				       ball_at(COLOUR_RED, (vec2){0, half}), ball_at(COLOUR_BLACK, (vec2){0, -half}),
+				       ball_at(COLOUR_RED, (vec2){d, half + 1e-5})};
+		ball[0].vel = (vec2){3, 0};
+		static struct sim sim;
+		struct event event;
+		sim_init(&sim, &t, &model, ball, 4);
+		do
+			ck_assert(sim_step(&sim, &event));
+		while (event.kind != EVENT_BALL_BALL);
+		ck_assert(event.ball == 0 && event.other == first);
+		bool both = false;
+		double time = event.time;
+		while (sim_step(&sim, &event) && event.time == time)
+			both = both || (event.ball == 0 && event.other == 3 - first);
+		ck_assert(both);
+	}
+}
+END_TEST
+
 Suite *test_suite(void)
 {
 	Suite *suite = suite_create("cluster");
@@ -338,6 +368,7 @@ Suite *test_suite(void)
 	tcase_add_loop_test(tcase, racks_with_gaps, 0, 3);
 	tcase_add_loop_test(tcase, one_into_two_off_centre, 0, 3);
 	tcase_add_test(tcase, clusters_keep_momentum);
+	tcase_add_test(tcase, the_first_hit_is_reported_first);
 	suite_add_tcase(suite, tcase);
 	return suite;
 }

@@ -274,6 +274,22 @@ START_TEST(invariants_lasting_contacts)
 }
 END_TEST
 
+/* All that a real table has, at once. */
+START_TEST(invariants_everything)
+{
+	struct table table = scene_snooker_table();
+	table.bed = (struct bed){.slope = {-1e-3, 1e-3}, .bowl = {1e-3, 5e-4, 5e-4}};
+	table.material.hertz_modulus = 6.4e9;
+	table.material.cue_end_mass = 0.005;
+	table.material.cushion_fall = 0.05;
+	table.cushion[1].e = 0.54;
+	table.cushion[1].mu = 0.35;
+	ck_assert_int_eq(table_finish(&table, NULL, 0), 0);
+	struct model model = model_named("real");
+	check_invariants("invariants real, everything", &table, &model, shots_wanted(1000));
+}
+END_TEST
+
 /* ---- repeatability ---- */
 
 static uint64_t break_hash(const char *name)
@@ -689,6 +705,7 @@ Suite *test_suite(void)
 	tcase_add_loop_test(invariants, invariants_no_pockets, 0, MODELS);
 	tcase_add_loop_test(invariants, invariants_uneven, 0, MODELS);
 	tcase_add_test(invariants, invariants_lasting_contacts);
+	tcase_add_test(invariants, invariants_everything);
 	suite_add_tcase(suite, invariants);
 	return suite;
 }

@@ -24,6 +24,8 @@ struct cluster {
 	struct body body[BALL_MAX];
 	struct bond bond[GROUP_MAX];
 	int body_count, bond_count, active;
+	int8_t begun[GROUP_MAX]; /* bonds in the order in which their contacts began */
+	int begun_count;
 	double stiffness; /* m^-1/2 s^-2, force per mass of one ball and d^(3/2) */
 	double damping;	  /* the same for d^(1/4) and the speed of approach */
 	double dt;	  /* s */
@@ -174,7 +176,10 @@ static void press(struct cluster *c, struct bond *bond, bool frictional)
 	c->active++;
 	a->pull = vec2_madd(a->pull, -push, n);
 	b->pull = vec2_madd(b->pull, push, n);
-	bond->touched = a->touched = b->touched = true;
+	if (!bond->touched) {
+		bond->touched = a->touched = b->touched = true;
+		c->begun[c->begun_count++] = (int8_t)(bond - c->bond);
+	}
 	if (frictional && push > 0)
 		rub(c, bond, n, push * c->dt);
 }
@@ -197,24 +202,14 @@ static void step(struct cluster *c, bool frictional)
 
 /* ---- from a group and back ---- */
 
-static int touched_bonds(const struct cluster *c)
-{
-	int count = 0;
-	for (int i = 0; i < c->bond_count; i++)
-		count += c->bond[i].touched;
-	return count;
-}
-
 static void report(const struct cluster *c, struct group *group)
 {
 	double time = group->contact[0].time;
 	group->count = 0;
 	group->balls = 0;
-	for (int i = 0; i < c->bond_count; i++) {
-		const struct bond *bond = &c->bond[i];
+	for (int i = 0; i < c->begun_count; i++) {
+		const struct bond *bond = &c->bond[c->begun[i]];
 		int16_t a = c->body[bond->a].ball, b = c->body[bond->b].ball;
-		if (!bond->touched)
-			continue;
 		group->contact[group->count++] = (struct event){time, EVENT_BALL_BALL, a, b};
 		group->balls |= 1u << a | 1u << b;
 	}
@@ -263,17 +258,18 @@ bool cluster_collide(struct sim *sim, struct group *group)
 	const struct table *table = sim->table;
 	if (!sim->model.lasting_contacts || table->material.hertz_modulus == 0 || sim->instant_contacts > CLUSTERS_MAX)
 		return false;
-	struct cluster c = {.stiffness = stiffness_of(table), .table = table};
-	double speed = fastest_approach(sim, group);
+	double speed = fastest_approach(sim, group), stiffness = stiffness_of(table);
 	if (speed < CLUSTER_SPEED)
 		return false;
-	double lasts = contact_time(c.stiffness, speed);
+	double lasts = contact_time(stiffness, speed);
 	struct ball now[BALL_MAX];
 	uint32_t balls = within_reach(sim, group, speed, lasts, now);
 	if (__builtin_popcount(balls) < 3)
 		return false;
-	c.damping = damping_of(c.stiffness, contact_restitution(table, &sim->model));
-	c.dt = lasts / CLUSTER_STEPS;
+	struct cluster c = {.stiffness = stiffness,
+			    .damping = damping_of(stiffness, contact_restitution(table, &sim->model)),
+			    .dt = lasts / CLUSTER_STEPS,
+			    .table = table};
 	add_bodies(&c, balls, now);
 	add_bonds(&c, speed, lasts, now);
 	double before = energy(&c);
@@ -281,7 +277,7 @@ bool cluster_collide(struct sim *sim, struct group *group)
 	do
 		step(&c, sim->model.ball == BALL_MODEL_FRICTIONAL);
 	while (c.active > 0 && ++steps < CLUSTER_STEPS_MAX);
-	if (touched_bonds(&c) < 2)
+	if (c.begun_count < 2)
 		return false;
 	hold_energy(&c, before);
 	report(&c, group);

@@ -10,7 +10,7 @@
 
 /* Resolves the first contacts of a group together with all that begin before they have ended, until no balls touch: as
  * everywhere, velocities and spins change at once and places stay. The group becomes the contacts that took place, in
- * the order of event_compare(), and their balls, advanced to now. False, and nothing is changed, when the model knows no
+ * the order in which they began, and their balls, advanced to now. False, and nothing is changed, when the model knows no
  * lasting contacts or only two balls take part: the law of a single contact says the same in closed form. */
 bool cluster_collide(struct sim *sim, struct group *group);
 
