@@ -27,7 +27,7 @@ VISION_CV := capture_cv image_io_cv markers_cv marker_image_cv
 # app: what the programs share, room by room
 APP_PROCESS := ball_message bus clock frame_slot frame_source message_check message_table options process process_options process_status supervisor text
 APP_CONFIG := config config_default config_reader config_table config_vision text_file save position shot_file colour_file
-APP_CONTROL := fsm layout stability controller
+APP_CONTROL := fsm layout stability game game_watch keeper words controller
 APP_LIGHT := animation draw draw_field draw_path draw_proposal keyframe lease picture render window
 APP_PLANNER := plan_check plan_message planner_service request_message
 APP_VIRTUAL := table_scene table_camera table_camera_ball player
@@ -55,6 +55,7 @@ TESTS += judge
 TESTS += habits sensor_faults
 TESTS += lease
 TESTS += drawn_shot
+TESTS += game
 # tests that are scripts: tests/NAME.sh, called with the build folder
 TEST_SCRIPTS := cli demo planner units build borders
 # tests/NAME.c: programs of their own that a test script compiles
@@ -68,7 +69,7 @@ BENCH_SHARED := report plain_sim plain_sim_long vision_eval vision_eval_photos v
 FUZZERS := position config shot_file colours image bus search controller
 FUZZ_SECONDS ?= 20
 LCM_TYPES := animation_t ball_t command_t draw_list_t draw_item_t image_t keyframe_t plan_t plan_entry_t plan_shot_t \
-	plan_request_t status_t metric_t table_state_t vision_doubt_t stability_t stability_condition_t lease_t
+	plan_request_t status_t metric_t table_state_t vision_doubt_t stability_t stability_condition_t lease_t game_t
 
 # ---- flags -----------------------------------------------------------------------------------------------------------
 

@@ -206,7 +206,7 @@ START_TEST(the_drawing_is_the_table)
 	ck_assert_ptr_nonnull(file);
 	kept[fread(kept, 1, sizeof kept - 1, file)] = 0;
 	fclose(file);
-	ck_assert_str_eq(kept, text);
+	ck_assert_msg(strcmp(kept, text) == 0, "docs/fsm.dot is another table");
 	free(text);
 }
 END_TEST

@@ -10,9 +10,10 @@
 #include "app/process/text.h"
 
 /* What can be said to the services, and what goes with it. */
-enum argument { ARGUMENT_NONE, ARGUMENT_SECONDS, ARGUMENT_ID, ARGUMENT_FILE, ARGUMENT_FAULT };
+enum argument { ARGUMENT_NONE, ARGUMENT_SECONDS, ARGUMENT_ID, ARGUMENT_FILE, ARGUMENT_FAULT, ARGUMENT_GAME };
 static const char *const wanted[] = {"no argument", "seconds", "the id of a request", "a file",
-				     "a fault and its seconds in one word"};
+				     "a fault and its seconds in one word",
+				     "a correction in one word (quotes): \"undo\", \"score 12 0\", \"turn 2\", \"on red\", ..."};
 
 /* A table is read by its columns. */
 /* clang-format off */
@@ -24,7 +25,8 @@ static const char *const wanted[] = {"no argument", "seconds", "the id of a requ
 			ROW("info", ARGUMENT_NONE) ROW("animation", ARGUMENT_NONE)                                     \
 				ROW("animation-stop", ARGUMENT_NONE) ROW("animation-restart", ARGUMENT_NONE)           \
 					ROW("animation-seek", ARGUMENT_SECONDS) ROW("snapshot", ARGUMENT_FILE)         \
-						ROW("cancel", ARGUMENT_ID) ROW("fault", ARGUMENT_FAULT)
+						ROW("cancel", ARGUMENT_ID) ROW("fault", ARGUMENT_FAULT)     \
+							ROW("game", ARGUMENT_GAME)
 /* clang-format on */
 
 #define AS_CONTROL(name, argument) {name, argument},
@@ -61,7 +63,9 @@ const struct options control_options = {
 	.operand_names = control_names,
 	.row = rows,
 	.notes = "pause, resume, infinity, next, previous, halo, paths, table, info, animation, animation-stop,\n"
-		 "animation-seek SECONDS, animation-restart, snapshot FILE.png, cancel ID, fault \"NAME SECONDS\"",
+		 "animation-seek SECONDS, animation-restart, snapshot FILE.png, cancel ID, fault \"NAME SECONDS\",\n"
+		 "game \"undo\", game \"score A B\", game \"turn 1|2\", game \"on red|colour|clearance\",\n"
+		 "game \"hand on|off\", game \"foul 4..7\", game \"again\", game \"frame\"",
 };
 
 static bool is_id(const char *text)
@@ -82,6 +86,7 @@ static bool argument_fits(enum argument kind, const char *text)
 		return text && is_id(text);
 	case ARGUMENT_FILE:
 	case ARGUMENT_FAULT:
+	case ARGUMENT_GAME:
 		return text && *text;
 	}
 	return false;

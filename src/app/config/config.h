@@ -38,6 +38,7 @@ struct config_infinity {
 	double silence_time;	/* s without a frame, or an answer of the planner, until the table says so */
 	double show_time;	/* s a proposal that is not final must be the same to be shown */
 	double better_margin;	/* share of its cost by which another must be better to replace it */
+	char game_file[CONFIG_PATH_MAX]; /* the game is kept there over a restart; empty: $STATE_DIRECTORY/game, or nowhere */
 	bool rules;		/* by the rules of snooker; false: any ball (thesis' infinity mode) */
 	double plan_timeout;	/* s without an answer until the request is repeated */
 	double animation_rate;	/* 1 real time */

@@ -242,6 +242,7 @@ static const struct config_key infinity_keys[] = {
 	NUMBER("silence_time", UNIT_MS, 100, 60000, AT(config.infinity.silence_time)),
 	NUMBER("show_time", UNIT_MS, 0, 10000, AT(config.infinity.show_time)),
 	NUMBER("better_margin", UNIT_NONE, 0, 10, AT(config.infinity.better_margin)),
+	TEXT("game_file", 0, CONFIG_PATH_MAX - 1, AT(config.infinity.game_file)),
 	FLAG("rules", AT(config.infinity.rules)),
 	NUMBER("plan_timeout", UNIT_MS, 10, 600000, AT(config.infinity.plan_timeout)),
 	NUMBER("animation_rate", UNIT_NONE, 0.01, 100, AT(config.infinity.animation_rate)),

@@ -9,6 +9,7 @@
 #include "app/planner/plan_check.h"
 #include "app/light/animation.h"
 #include "app/planner/plan_message.h"
+#include "app/control/words.h"
 #include "vision/vision.h"
 
 /* What a camera's errors may do to a layout; more is no error but a wrong position. */
@@ -52,6 +53,20 @@ static void note(struct controller *c, const char *text)
 	snprintf(c->note, sizeof c->note, "%s", text);
 }
 
+/* Spots that balls are wanted on, and where the cue ball may be placed. */
+static void draw_game(struct controller *c)
+{
+	const struct game *game = &c->keeper.game;
+	double radius = c->config->table.ball_radius;
+	if (!c->config->infinity.rules || c->fsm.state == FSM_SHOT || c->fsm.state == FSM_PAUSED)
+		return;
+	for (int i = 0; i < game->wish_count; i++)
+		draw_ring(&c->draw, game->wish[i].place, 1.2 * radius, 0.2 * radius,
+			  draw_ball_rgba((int)game->wish[i].colour));
+	if (game->state.in_hand || keeper_cue_fell(&c->keeper, &c->config->table))
+		draw_region_in_hand(&c->draw, &c->config->table, c->seen.ball, c->seen.count);
+}
+
 /* Rings only where balls are known to rest. */
 static void draw_nothing(struct controller *c, const char *text)
 {
@@ -63,6 +78,7 @@ static void draw_nothing(struct controller *c, const char *text)
 	draw_clear(&c->draw);
 	draw_idle(&c->draw, &c->config->table,
 		  &(struct draw_resting){c->seen.ball, at_rest ? c->seen.count : 0, c->drawn_note}, &c->options);
+	draw_game(c);
 	c->draw.plan_id = 0;
 	c->animation = (billiard_animation_t){0};
 	c->output.draw = c->output.animation = true;
@@ -73,6 +89,7 @@ static void draw_shown(struct controller *c)
 	c->drawn_note[0] = '\0';
 	draw_clear(&c->draw);
 	draw_proposal(&c->draw, &c->config->table, &(struct draw_subject){&c->plan, c->entry, c->shot}, &c->options);
+	draw_game(c);
 	c->draw.plan_id = c->plan.request_id;
 	c->output.draw = true;
 }
@@ -92,23 +109,6 @@ static void animate_shown(struct controller *c, double now)
 	c->output.animation = true;
 }
 
-static int count_reds(const struct layout *layout)
-{
-	int reds = 0;
-	for (int i = 0; i < layout->count; i++)
-		reds += layout->ball[i].colour == COLOUR_RED;
-	return reds;
-}
-
-/* The ball on, as far as the layouts tell: a red fell since the last request: a colour; else what the position says. */
-static struct rules_state ball_on(const struct controller *c)
-{
-	struct rules_state state = rules_state_from_position(c->seen.ball, c->seen.count);
-	if (c->has_asked && count_reds(&c->seen) < count_reds(&c->asked))
-		state.on = ON_COLOUR;
-	return state;
-}
-
 static void name_balls(billiard_plan_request_t *r, const struct layout *layout)
 {
 	char name[16];
@@ -124,8 +124,6 @@ static void request(struct controller *c, double now)
 {
 	const struct config_planner *p = &c->config->planner;
 	bool rules = c->config->infinity.rules;
-	if (rules)
-		c->rules = ball_on(c);
 	c->asked = c->seen;
 	c->asked_at = now;
 	c->has_asked = true;
@@ -138,8 +136,8 @@ static void request(struct controller *c, double now)
 		.id = id,
 		.ball_count = c->settled.count,
 		.target_kind = rules ? TARGET_RULES : TARGET_ANY,
-		.on = rules ? (int8_t)c->rules.on : ON_ANY,
-		.in_hand = c->rules.in_hand,
+		.on = rules ? (int8_t)c->keeper.game.state.on : ON_ANY,
+		.in_hand = rules && c->keeper.game.state.in_hand,
 		.depth = p->depth,
 		.rails = p->rails,
 		.max_balls = p->balls,
@@ -284,72 +282,6 @@ static struct stability_view view_of(const struct controller *c, const billiard_
 	return view;
 }
 
-static void say(struct controller *c, const char *text)
-{
-	snprintf(c->word, sizeof c->word, "%s", text);
-}
-
-/* "RED at (300, 200): hidden", mm. */
-static void say_of_ball(struct controller *c, const struct ball *ball, const char *what)
-{
-	snprintf(c->word, sizeof c->word, "%s at (%.0f, %.0f): %s", ball_colour_name(ball->colour), 1e3 * ball->pos.x,
-		 1e3 * ball->pos.y, what);
-}
-
-static void say_what_is_not_clear(struct controller *c, const struct layout *layout, const struct stability_view *view)
-{
-	if (view->occluded)
-		say(c, "something is over the table");
-	else if (view->doubted < 0)
-		say(c, "looking again");
-	else if (c->doubt.ball_doubt[view->doubted] & DOUBT_HIDDEN)
-		say_of_ball(c, &layout->ball[view->doubted], "hidden");
-	else if (c->doubt.ball_doubt[view->doubted] & DOUBT_PLACE)
-		say_of_ball(c, &layout->ball[view->doubted], "not seen clearly");
-	else
-		say_of_ball(c, &layout->ball[view->doubted], "which colour?");
-}
-
-/* Why the table is not taken for still, in a word. */
-static void say_obstacle(struct controller *c, const struct layout *layout, const struct stability_view *view)
-{
-	enum stability_condition obstacle = stability_obstacle(&c->stability);
-	int ball = obstacle < STABILITY_ALL ? c->stability.result[obstacle].ball : -1;
-	switch (obstacle) {
-	case STABILITY_CUE:
-		say(c, view->occluded ? "something is over the table" : "which white ball is the cue ball?");
-		break;
-	case STABILITY_STILL:
-		if (ball >= 0)
-			say_of_ball(c, &layout->ball[ball], "moves");
-		else
-			say(c, "waiting for rest");
-		break;
-	case STABILITY_KEPT:
-		say(c, "a ball comes and goes");
-		break;
-	case STABILITY_NONE_NEW:
-		say(c, "a ball comes and goes");
-		break;
-	case STABILITY_CLEAR:
-		say_what_is_not_clear(c, layout, view);
-		break;
-	case STABILITY_ALL:
-	case STABILITY_CONDITIONS:
-		break;
-	}
-}
-
-static void say_blindness(struct controller *c, const billiard_table_state_t *state)
-{
-	char reason[sizeof state->reason];
-	text_get(reason, sizeof reason, state->reason, sizeof state->reason);
-	if (state->calibration != 0)
-		say(c, "no cue ball");
-	else
-		snprintf(c->word, sizeof c->word, "not calibrated: %.70s", reason);
-}
-
 /* White and the six colours are there once each; by the rules that matters. */
 static int second_of_its_colour(const struct controller *c, const struct layout *layout)
 {
@@ -367,36 +299,40 @@ static bool holds_together(struct controller *c)
 {
 	int culprit = second_of_its_colour(c, &c->seen);
 	if (culprit >= 0) {
-		say_of_ball(c, &c->seen.ball[culprit], "seen twice");
+		words_of_ball(c->word, &c->seen.ball[culprit], "seen twice");
 		return false;
 	}
 	const struct layout_limits limits = {SHIFT_MAX, OVERLAP_MAX, c->config->model.pocket == POCKET_MODEL_JAWS};
 	c->settled = c->seen;
 	if (layout_settle(&c->settled, &c->config->table, &limits, &culprit))
 		return true;
-	say_of_ball(c, &c->seen.ball[culprit], "cannot lie there");
+	words_of_ball(c->word, &c->seen.ball[culprit], "cannot lie there");
 	return false;
 }
 
 static void report(struct controller *c, enum stability_verdict verdict, const struct layout *layout)
 {
-	billiard_stability_t *r = &c->report;
-	*r = (billiard_stability_t){.utime = c->last_frame, .verdict = (int8_t)verdict};
+	c->report = (billiard_stability_t){.utime = c->last_frame, .verdict = (int8_t)verdict};
 	if (verdict != STABILITY_STABLE)
-		text_set(r->word, sizeof r->word, c->word);
-	for (int i = 0; i < STABILITY_CONDITIONS; i++) {
-		const struct stability_result *from = &c->stability.result[i];
-		const struct layout *of = i == STABILITY_KEPT ? &c->stability.anchor : layout;
-		r->conditions[i] = (billiard_stability_condition_t){
-			.holds = from->holds,
-			.value = from->value,
-			.limit = from->limit,
-			.held = from->held,
-			.needed = from->needed,
-			.track = from->ball >= 0 && from->ball < of->count ? of->track[from->ball] : 0,
-		};
-	}
+		text_set(c->report.word, sizeof c->report.word, c->word);
+	words_report(c->report.conditions, &c->stability, layout);
 	c->output.stability = true;
+}
+
+/* The game goes on with what lies there now; what has to be done before anybody plays becomes the note. True: there is something. */
+static bool keep_game(struct controller *c)
+{
+	char demand[GAME_TEXT_SIZE];
+	if (!c->config->infinity.rules)
+		return false;
+	if (keeper_rest(&c->keeper, &c->config->table, &c->seen, c->config->infinity.nudge_distance,
+			1e-6 * (double)c->last_frame)) {
+		c->output.game = true;
+		c->has_plan = c->has_none = false; /* another shot is wanted, even where no ball lies elsewhere */
+	}
+	game_demand(&c->keeper.game, demand);
+	note(c, demand);
+	return demand[0] != '\0';
 }
 
 /* What was asked for, or has an answer, lies there still: a hand that passed changes nothing. */
@@ -429,12 +365,21 @@ static void on_verdict(struct controller *c, enum stability_verdict verdict, dou
 		event(c, FSM_MOVING, now);
 		break;
 	case STABILITY_STABLE:
-		event(c, is_known(c) ? FSM_SAME : FSM_STABLE, now);
+		event(c, keep_game(c) ? FSM_WISH : is_known(c) ? FSM_SAME : FSM_STABLE, now);
 		break;
 	case STABILITY_UNSURE:
 		on_unsure(c, now);
 		break;
 	}
+}
+
+static void say_blindness(struct controller *c, const billiard_table_state_t *state)
+{
+	bool fell = c->config->infinity.rules && keeper_cue_fell(&c->keeper, &c->config->table);
+	if (state->calibration != 0 && fell)
+		snprintf(c->word, sizeof c->word, "CUE BALL IN HAND: PLACE IT IN THE D");
+	else
+		words_of_blindness(c->word, state);
 }
 
 bool controller_state(struct controller *c, const billiard_table_state_t *state, double now)
@@ -452,17 +397,17 @@ bool controller_state(struct controller *c, const billiard_table_state_t *state,
 	if (verdict == STABILITY_LOST)
 		say_blindness(c, state);
 	else
-		say_obstacle(c, &layout, &view);
-	report(c, verdict, &layout);
+		words_of_obstacle(c->word, &c->stability, &layout, &view, &c->doubt);
+	struct layout whole = layout;
 	if (seen && layout.cue >= 0) {
 		drop_false_whites(&layout);
 		c->seen = layout;
 	}
-	if (verdict == STABILITY_STABLE && !holds_together(c)) {
+	if (seen && c->config->infinity.rules)
+		keeper_frame(&c->keeper, &c->config->table, &layout, view.time, view.occluded);
+	if (verdict == STABILITY_STABLE && !holds_together(c))
 		verdict = STABILITY_UNSURE;
-		c->report.verdict = (int8_t)verdict;
-		text_set(c->report.word, sizeof c->report.word, c->word);
-	}
+	report(c, verdict, &whole);
 	on_verdict(c, verdict, now);
 	return true;
 }
@@ -577,6 +522,16 @@ static bool animation_control(struct controller *c, const char *name, const char
 	return true;
 }
 
+static bool correct_game(struct controller *c, const char *words, double now)
+{
+	char err[2 * GAME_TEXT_SIZE];
+	if (!keeper_correct(&c->keeper, words, err, sizeof err))
+		return false;
+	c->output.game = true;
+	event(c, FSM_ANEW, now);
+	return true;
+}
+
 bool controller_command(struct controller *c, const billiard_command_t *command, double now)
 {
 	char name[sizeof command->name], target[sizeof command->target], argument[sizeof command->argument];
@@ -599,6 +554,8 @@ bool controller_command(struct controller *c, const billiard_command_t *command,
 			return true;
 		}
 	}
+	if (strcmp(name, "game") == 0)
+		return correct_game(c, argument, now);
 	if (strcmp(name, "halo") == 0)
 		return toggle(c, &c->options.halo, now);
 	if (strcmp(name, "paths") == 0)

@@ -6,6 +6,7 @@
 #include "app/config/config.h"
 #include "app/light/draw.h"
 #include "app/control/fsm.h"
+#include "app/control/keeper.h"
 #include "app/control/stability.h"
 #include "lcmtypes/billiard_animation_t.h"
 #include "lcmtypes/billiard_command_t.h"
@@ -18,7 +19,7 @@
 
 /* What is to be sent after a call; the caller sends and clears the flags. */
 struct controller_output {
-	bool request, draw, animation, cancel, stability;
+	bool request, draw, animation, cancel, stability, game;
 	int64_t cancel_id;
 };
 
@@ -40,7 +41,7 @@ struct controller {
 	struct layout asked; /* what the present request was made for */
 	bool has_asked;
 	double asked_at; /* s, monotonic */
-	struct rules_state rules;
+	struct keeper keeper; /* the game, by the rules */
 	billiard_plan_request_t request;
 	/* what came: the newest answer waits until it has settled */
 	billiard_plan_t offered, plan;

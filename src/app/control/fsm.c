@@ -32,6 +32,7 @@ static const struct cell table[FSM_EVENT_COUNT][FSM_STATE_COUNT] = {
 [FSM_SILENT]   = { TO(BLIND, NOTE),               TO(BLIND, NOTE),               TO(BLIND, CANCEL | NOTE),              TO(BLIND, CLEAR | NOTE),            TO(BLIND, NOTE),               STAY },
 [FSM_MOVING]   = { TO(WATCHING, CLEAR),           TO(WATCHING, CLEAR),           TO(WATCHING, CANCEL | CLEAR),          TO(SHOT, CLEAR),                    TO(SHOT, CLEAR),               STAY },
 [FSM_DOUBT]    = { TO(WATCHING, NOTE),            TO(WATCHING, NOTE),            STAY,                                  STAY,                               TO(WATCHING, NOTE),            STAY },
+[FSM_WISH]     = { TO(WATCHING, NOTE),            TO(WATCHING, NOTE),            TO(WATCHING, CANCEL | NOTE),           TO(WATCHING, CLEAR | NOTE),         TO(WATCHING, NOTE),            STAY },
 [FSM_STABLE]   = { TO(PLANNING, CLEAR | REQUEST), TO(PLANNING, CLEAR | REQUEST), TO(PLANNING, CANCEL | CLEAR | REQUEST),TO(PLANNING, CLEAR | REQUEST),      TO(PLANNING, CLEAR | REQUEST), STAY },
 [FSM_SAME]     = { TO(SHOWING, SHOW),             TO(SHOWING, SHOW),             STAY,                                  STAY,                               TO(SHOWING, SHOW),             STAY },
 [FSM_READY]    = { STAY,                          STAY,                          TO(SHOWING, SHOW),                     TO(SHOWING, SHOW),                  STAY,                          STAY },
@@ -88,7 +89,7 @@ const char *fsm_state_name(enum fsm_state state)
 
 const char *fsm_event_name(enum fsm_event event)
 {
-	static const char *const name[FSM_EVENT_COUNT] = {"LOST",   "SILENT", "MOVING", "DOUBT",    "STABLE", "SAME",
+	static const char *const name[FSM_EVENT_COUNT] = {"LOST",   "SILENT", "MOVING", "DOUBT",    "WISH", "STABLE", "SAME",
 							  "READY",  "NONE",   "LATE",	"TIMEOUT",  "ANEW",   "PAUSE",
 							  "RESUME", "TOGGLE", "NEXT",	"PREVIOUS", "REDRAW"};
 	return name[event];

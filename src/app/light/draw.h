@@ -48,6 +48,9 @@ struct draw_subject {
 void draw_proposal(billiard_draw_list_t *list, const struct table *table, const struct draw_subject *subject,
 		   const struct draw_options *options);
 
+/* The D, in which the cue ball may be placed: dashed, and dark beside the balls. */
+void draw_region_in_hand(billiard_draw_list_t *list, const struct table *table, const struct ball *ball, int count);
+
 /* Balls without a proposal, and a line of text at the bottom (empty: none). All borrowed. */
 struct draw_resting {
 	const struct ball *ball;

@@ -259,6 +259,36 @@ void draw_proposal(billiard_draw_list_t *list, const struct table *table, const 
 		draw_infos(&proposal);
 }
 
+static bool is_free_of_balls(vec2 at, double reach, const struct ball *ball, int count)
+{
+	for (int i = 0; i < count; i++)
+		if (ball[i].phase != BALL_POTTED && vec2_dist(at, ball[i].pos) < reach)
+			return false;
+	return true;
+}
+
+void draw_region_in_hand(billiard_draw_list_t *list, const struct table *table, const struct ball *ball, int count)
+{
+	enum { DASHES = 18 };
+	static const double WIDTH = 0.006; /* m */
+	static const uint32_t RGBA = 0xffffffff;
+	double reach = 3 * table->ball_radius, r = table->baulk_d_radius;
+	vec2 c = table->baulk_d_centre;
+	/* Half a circle towards the bottom cushion, and the line that closes it. */
+	for (int i = 0; i < DASHES; i++) {
+		vec2 arc[2], line[2];
+		for (int k = 0; k < 2; k++) {
+			double share = (i + 0.25 + 0.5 * k) / DASHES;
+			arc[k] = vec2_madd(c, r, vec2_from_angle(M_PI / 2 + M_PI * share));
+			line[k] = (vec2){c.x, c.y - r + 2 * r * share};
+		}
+		if (is_free_of_balls(arc[0], reach, ball, count) && is_free_of_balls(arc[1], reach, ball, count))
+			draw_polyline(list, arc, 2, WIDTH, RGBA);
+		if (is_free_of_balls(line[0], reach, ball, count) && is_free_of_balls(line[1], reach, ball, count))
+			draw_polyline(list, line, 2, WIDTH, RGBA);
+	}
+}
+
 void draw_idle(billiard_draw_list_t *list, const struct table *table, const struct draw_resting *resting,
 	       const struct draw_options *options)
 {

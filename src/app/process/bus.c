@@ -75,6 +75,7 @@ TYPE_WRAPPERS(status_t)
 TYPE_WRAPPERS(vision_doubt_t)
 TYPE_WRAPPERS(stability_t)
 TYPE_WRAPPERS(lease_t)
+TYPE_WRAPPERS(game_t)
 
 /* image_t is the one type whose decoder would allocate what the wire says. */
 static bool image_size_fits(const void *bytes, size_t size)
@@ -98,6 +99,7 @@ const struct bus_type bus_command = TYPE(command_t, NULL, &message_command);
 const struct bus_type bus_status = TYPE(status_t, NULL, &message_status);
 const struct bus_type bus_stability = TYPE(stability_t, NULL, &message_stability);
 const struct bus_type bus_lease = TYPE(lease_t, NULL, &message_lease);
+const struct bus_type bus_game = TYPE(game_t, NULL, &message_game);
 const struct bus_type bus_vision_doubt = TYPE(vision_doubt_t, NULL, &message_vision_doubt);
 
 /* ---- opening -------------------------------------------------------------------------------------------------------- */

@@ -11,6 +11,7 @@
 #include "lcmtypes/billiard_animation_t.h"
 #include "lcmtypes/billiard_command_t.h"
 #include "lcmtypes/billiard_draw_list_t.h"
+#include "lcmtypes/billiard_game_t.h"
 #include "lcmtypes/billiard_image_t.h"
 #include "lcmtypes/billiard_lease_t.h"
 #include "lcmtypes/billiard_plan_request_t.h"
@@ -35,7 +36,7 @@ struct bus_type {
 	const struct message_table *table;
 };
 extern const struct bus_type bus_image, bus_table_state, bus_plan_request, bus_plan, bus_draw_list, bus_animation,
-	bus_command, bus_status, bus_vision_doubt, bus_stability, bus_lease;
+	bus_command, bus_status, bus_vision_doubt, bus_stability, bus_lease, bus_game;
 
 /* message has passed its type's table; borrowed until the handler returns. False: not acceptable (outdated, contradictory); it is counted
  * as ignored. */

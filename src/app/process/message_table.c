@@ -5,6 +5,7 @@
 #include "lcmtypes/billiard_animation_t.h"
 #include "lcmtypes/billiard_command_t.h"
 #include "lcmtypes/billiard_draw_list_t.h"
+#include "lcmtypes/billiard_game_t.h"
 #include "lcmtypes/billiard_image_t.h"
 #include "lcmtypes/billiard_lease_t.h"
 #include "lcmtypes/billiard_plan_request_t.h"
@@ -98,6 +99,17 @@ static const struct message_member stability[] = {
 	PARTS(billiard_stability_t, conditions, NULL, stability_conditions),
 };
 const struct message_table message_stability = TABLE(stability);
+
+static const struct message_member game[] = {
+	ONE(billiard_game_t, utime, UTIME),
+	ONE(billiard_game_t, turn, 0.0, 1.0),
+	ONE(billiard_game_t, on, 0.0, 3.0),
+	COUNT(billiard_game_t, wish_count, wish_colour, 0.0),
+	MANY(billiard_game_t, wish_colour, "wish_count", COLOUR),
+	MANY(billiard_game_t, wish_x, "wish_count", PLACE),
+	MANY(billiard_game_t, wish_y, "wish_count", PLACE),
+};
+const struct message_table message_game = TABLE(game);
 
 static const struct message_member image[] = {
 	ONE(billiard_image_t, utime, UTIME),

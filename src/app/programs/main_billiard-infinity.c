@@ -1,13 +1,17 @@
 /* billiard-infinity: the controller. Thinks in controller.c; here is the bus around it. */
 #include <stdio.h>
+#include <stdlib.h>
 #include <string.h>
 
 #include "app/process/text.h"
 #include "app/process/clock.h"
+#include "app/config/save.h"
+#include "app/config/text_file.h"
 #include "app/control/controller.h"
 #include "app/process/process.h"
 
 enum { TICK_US = 50000, REPEAT_US = 500000, LEASE_US = 250000 };
+enum { GAME_FILE_SIZE = 4096 };
 static const double LEASE = 0.9; /* s a picture is true after the last word from here */
 
 struct infinity {
@@ -15,6 +19,7 @@ struct infinity {
 	struct config config;
 	struct controller controller;
 	int64_t draw_seq;
+	char game_path[CONFIG_PATH_MAX]; /* empty: the game is not kept over a restart */
 };
 
 static double now(void)
@@ -38,6 +43,47 @@ static void send_lease(struct infinity *p)
 static void send_animation(struct infinity *p)
 {
 	bus_publish(p->process.bus, "ANIMATION", &bus_animation, &p->controller.animation);
+}
+
+/* What is kept of the game, for everybody and for the next infinity. */
+static void send_game(struct infinity *p)
+{
+	billiard_game_t game = {.utime = clock_utime()};
+	keeper_report(&p->controller.keeper, &game);
+	bus_publish(p->process.bus, "GAME", &bus_game, &game);
+}
+
+/* ---- the game over a restart ------------------------------------------------------------------------------------------ */
+
+static void save_game(struct infinity *p)
+{
+	char text[GAME_FILE_SIZE], err[PROCESS_ERROR_SIZE];
+	if (p->game_path[0] && game_write(&p->controller.keeper.game, text, sizeof text) &&
+	    save_file(p->game_path, text, strlen(text), err, sizeof err) < 0)
+		process_error(&p->process, "%s", err);
+}
+
+static void find_game(struct infinity *p)
+{
+	const char *folder = getenv("STATE_DIRECTORY");
+	if (p->config.infinity.game_file[0])
+		snprintf(p->game_path, sizeof p->game_path, "%s", p->config.infinity.game_file);
+	else if (folder && strlen(folder) < sizeof p->game_path - 8)
+		snprintf(p->game_path, sizeof p->game_path, "%.*s/game", (int)sizeof p->game_path - 8, folder);
+}
+
+/* A file that is not there, or holds no game, is no error: a game begins. */
+static void load_game(struct infinity *p)
+{
+	char *text, err[PROCESS_ERROR_SIZE];
+	size_t size;
+	struct game game;
+	find_game(p);
+	if (!p->game_path[0] || text_file_read(p->game_path, GAME_FILE_SIZE, &text, &size, err, sizeof err) < 0)
+		return;
+	if (game_read(&game, text))
+		keeper_restore(&p->controller.keeper, &game);
+	free(text);
 }
 
 static void send_cancel(struct infinity *p, int64_t id)
@@ -64,6 +110,10 @@ static void flush(struct infinity *p)
 	}
 	if (out.stability)
 		bus_publish(p->process.bus, "STABILITY", &bus_stability, &p->controller.report);
+	if (out.game) {
+		send_game(p);
+		save_game(p);
+	}
 	if (out.draw)
 		send_draw(p);
 	if (out.animation) {
@@ -123,8 +173,11 @@ static int on_lease(sd_event_source *source, uint64_t usec, void *context)
 static int on_repeat(sd_event_source *source, uint64_t usec, void *context)
 {
 	(void)source, (void)usec;
-	send_draw(context);
-	send_animation(context);
+	struct infinity *p = context;
+	send_draw(p);
+	send_animation(p);
+	if (p->config.infinity.rules && p->controller.keeper.game.begun)
+		send_game(p);
 	return 0;
 }
 
@@ -141,6 +194,7 @@ static int setup(struct infinity *p, const struct process_options *options)
 	if (r < 0)
 		return r;
 	controller_init(&p->controller, &p->config);
+	load_game(p);
 	p->process.describe = describe;
 	p->process.context = p;
 	if ((r = bus_subscribe(p->process.bus, &(struct bus_subscription){"TABLE_DOUBT", &bus_vision_doubt, BUS_EACH,
