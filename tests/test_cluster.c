@@ -330,6 +330,28 @@ START_TEST(clusters_keep_momentum)
 }
 END_TEST
 
+/* A rack hit in its middle: what the one half does, the other does mirrored. */
+START_TEST(a_rack_stays_mirrored)
+{
+	struct model model = real_model();
+	for (int k = 0; k < 3; k++) {
+		struct scene s = {.table = table_with_time(), .speed = 6, .window = 1e-9};
+		vec2 vel[RACK];
+		rack(&s, k * 1e-4, 0);
+		s.ball[0].spin[1] = 0.3 * s.speed / s.table.ball_radius;
+		simulate(&s, &model, vel);
+		ck_assert_double_le(fabs(vel[0].y), 1e-9);
+		for (int i = 1; i < RACK; i++) {
+			for (int m = 1; m < RACK; m++) {
+				vec2 mirrored = {s.ball[m].pos.x, -s.ball[m].pos.y};
+				if (vec2_dist(mirrored, s.ball[i].pos) < 1e-9)
+					ck_assert_double_le(vec2_dist(vel[i], (vec2){vel[m].x, -vel[m].y}), 1e-9);
+			}
+		}
+	}
+}
+END_TEST
+
 /* Of contacts that belong together the first is reported first, whatever the balls' numbers: who was hit first decides a
  * foul. */
 START_TEST(the_first_hit_is_reported_first)
@@ -368,6 +390,7 @@ Suite *test_suite(void)
 	tcase_add_loop_test(tcase, racks_with_gaps, 0, 3);
 	tcase_add_loop_test(tcase, one_into_two_off_centre, 0, 3);
 	tcase_add_test(tcase, clusters_keep_momentum);
+	tcase_add_test(tcase, a_rack_stays_mirrored);
 	tcase_add_test(tcase, the_first_hit_is_reported_first);
 	suite_add_tcase(suite, tcase);
 	return suite;

@@ -9,6 +9,8 @@ struct body {
 	vec2 pos, vel;	/* m, m/s */
 	double spin[3]; /* rad/s */
 	vec2 pull;	/* m/s^2, of all its contacts */
+	vec2 rub;	/* m/s, friction of the step */
+	double turn[3]; /* rad/s, the same */
 	int8_t ball;	/* index in the simulation */
 	bool touched;
 };
@@ -139,9 +141,9 @@ static vec2 slip_of(const struct cluster *c, const struct body *a, const struct 
 static void turn(struct body *body, vec2 n, vec2 impulse, double radius)
 {
 	double k = 2.5 / radius;
-	body->spin[0] -= k * impulse.y * -n.y;
-	body->spin[1] -= k * impulse.y * n.x;
-	body->spin[2] += k * impulse.x;
+	body->turn[0] -= k * impulse.y * -n.y;
+	body->turn[1] -= k * impulse.y * n.x;
+	body->turn[2] += k * impulse.x;
 }
 
 /* Friction of one step with normal impulse `push` per mass: mu of it, at most what ends half the slip. In the law of a
@@ -156,8 +158,8 @@ static void rub(struct cluster *c, const struct bond *bond, vec2 n, double push)
 		return;
 	double mu = 2 * m->e_ball / (1 + m->e_ball) * (m->mu_ball_a + m->mu_ball_b * exp(-m->mu_ball_c * size));
 	vec2 impulse = vec2_scale(slip, -fmin(mu * push / size, 1.0 / 14));
-	a->vel = vec2_madd(a->vel, impulse.x, vec2_perp(n));
-	b->vel = vec2_madd(b->vel, -impulse.x, vec2_perp(n));
+	a->rub = vec2_madd(a->rub, impulse.x, vec2_perp(n));
+	b->rub = vec2_madd(b->rub, -impulse.x, vec2_perp(n));
 	turn(a, n, impulse, c->table->ball_radius);
 	turn(b, n, impulse, c->table->ball_radius);
 }
@@ -184,20 +186,32 @@ static void press(struct cluster *c, struct bond *bond, bool frictional)
 		rub(c, bond, n, push * c->dt);
 }
 
-/* Velocity Verlet: half a kick, a drift, the forces there, half a kick. */
-static void step(struct cluster *c, bool frictional)
+/* Half a kick and a drift. */
+static void drift(struct cluster *c)
 {
 	for (int i = 0; i < c->body_count; i++) {
 		struct body *b = &c->body[i];
 		b->vel = vec2_madd(b->vel, 0.5 * c->dt, b->pull);
 		b->pos = vec2_madd(b->pos, c->dt, b->vel);
-		b->pull = (vec2){0, 0};
+		b->pull = b->rub = (vec2){0, 0};
+		b->turn[0] = b->turn[1] = b->turn[2] = 0;
 	}
+}
+
+/* Velocity Verlet: half a kick, a drift, the forces there, half a kick. All forces are found before any is applied: no
+ * order among the contacts, mirrored places give mirrored results. */
+static void step(struct cluster *c, bool frictional)
+{
+	drift(c);
 	c->active = 0;
 	for (int i = 0; i < c->bond_count; i++)
 		press(c, &c->bond[i], frictional);
-	for (int i = 0; i < c->body_count; i++)
-		c->body[i].vel = vec2_madd(c->body[i].vel, 0.5 * c->dt, c->body[i].pull);
+	for (int i = 0; i < c->body_count; i++) {
+		struct body *b = &c->body[i];
+		b->vel = vec2_add(vec2_madd(b->vel, 0.5 * c->dt, b->pull), b->rub);
+		for (int k = 0; k < 3; k++)
+			b->spin[k] += b->turn[k];
+	}
 }
 
 /* ---- from a group and back ---- */
