@@ -25,7 +25,7 @@ SEARCH := acceptance budget candidate cost crew estimate export figures frontier
 VISION := calibration camera colour detector fit linear marker_edges outline pose reason scan scan_changes scan_cloth scan_copy scan_marks scan_place seeds stabilise stages track vision
 VISION_CV := capture_cv image_io_cv markers_cv marker_image_cv
 # app: what the programs share, room by room
-APP_PROCESS := ball_message bus clock frame_slot frame_source message_check message_table options process process_options process_status supervisor text
+APP_PROCESS := ball_message bus clock frame_slot frame_source message_check message_table options process process_options process_status supervisor text watchdog
 APP_CONFIG := config config_default config_reader config_table config_vision text_file save position shot_file colour_file
 APP_CONTROL := fsm layout stability game game_watch keeper words controller
 APP_LIGHT := animation draw draw_field draw_path draw_proposal keyframe lease picture render window

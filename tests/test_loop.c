@@ -113,6 +113,29 @@ START_TEST(run_starts_all_restarts_one_and_stops_all)
 }
 END_TEST
 
+static bool infinity_started_again(void)
+{
+	pid_t pid = pid_of("billiard-infinity");
+	return pid && pid != (pid_t)threshold;
+}
+
+/* A service that is there and does nothing any more: three seconds are forgiven, then another takes its place. */
+START_TEST(a_service_that_hangs_is_replaced)
+{
+	pid_t run = fixture_start("billiard", (const char *[]){"run", "-c", conf, NULL});
+	ck_assert(fixture_wait(bus, all_run, 15));
+	threshold = pid_of("billiard-infinity");
+	kill((pid_t)threshold, SIGSTOP);
+	ck_assert(!fixture_wait(bus, infinity_started_again, 3));
+	kill((pid_t)threshold, SIGCONT);
+	ck_assert(!fixture_wait(bus, infinity_started_again, 4));
+	kill((pid_t)threshold, SIGSTOP);
+	ck_assert(fixture_wait(bus, infinity_started_again, 12));
+	kill(run, SIGINT);
+	ck_assert_int_eq(fixture_end(run, 4), 0);
+}
+END_TEST
+
 static bool all_gone(void)
 {
 	for (int i = 0; i < heard.status_count; i++)
@@ -174,6 +197,7 @@ Suite *test_suite(void)
 	tcase_set_timeout(commands, 60);
 	tcase_add_checked_fixture(commands, service_setup, service_teardown);
 	tcase_add_test(commands, run_starts_all_restarts_one_and_stops_all);
+	tcase_add_test(commands, a_service_that_hangs_is_replaced);
 	tcase_add_test(commands, no_service_outlives_a_killed_run);
 	tcase_add_test(commands, run_gives_up_when_no_service_can_start);
 	tcase_add_test(commands, status_says_who_is_silent);

@@ -8,11 +8,18 @@
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
+#include <sys/epoll.h>
 #include <sys/prctl.h>
 #include <sys/wait.h>
 #include <unistd.h>
 
-enum { RESTART_US = 500000, KILL_US = 3000000 };
+enum { RESTART_US = 500000, RESTART_MAX_US = 8000000, KILL_US = 3000000 };
+enum {
+	SETTLED_US = 5000000, /* who lives that long did not die at once */
+	SIGN_US = 2000000,    /* asked for between two signs of life, at most */
+	HUNG_US = 5000000,    /* without one: three seconds of standing still are forgiven */
+	WATCH_US = 500000     /* between looks for such */
+};
 
 void supervisor_block(void)
 {
@@ -22,10 +29,55 @@ void supervisor_block(void)
 	sigprocmask(SIG_BLOCK, &set, NULL);
 }
 
+static uint64_t monotonic_us(const struct supervisor *s)
+{
+	uint64_t now = 0;
+	sd_event_now(s->event, CLOCK_MONOTONIC, &now);
+	return now;
+}
+
+static int on_sign(sd_event_source *source, int fd, uint32_t events, void *context)
+{
+	(void)source, (void)fd, (void)events;
+	struct supervisor *s = context;
+	pid_t pid;
+	while (watchdog_hear(&s->watchdog, &pid))
+		for (int i = 0; i < s->count; i++)
+			if (s->service[i].pid && s->service[i].pid == pid)
+				s->service[i].heard = monotonic_us(s);
+	return 0;
+}
+
+/* A service that gave signs of life and gives none any more hangs: it is killed, and so started again. */
+static int on_watch(sd_event_source *source, uint64_t usec, void *context)
+{
+	(void)usec;
+	struct supervisor *s = context;
+	uint64_t now = monotonic_us(s);
+	for (int i = 0; i < s->count; i++) {
+		struct supervised *c = &s->service[i];
+		if (!c->pid || !c->heard || now - c->heard < HUNG_US)
+			continue;
+		fprintf(stderr, "billiard: %s hangs\n", c->name);
+		kill(c->pid, SIGKILL);
+		c->heard = 0;
+	}
+	sd_event_source_set_time_relative(source, WATCH_US);
+	return sd_event_source_set_enabled(source, SD_EVENT_ONESHOT);
+}
+
 void supervisor_init(struct supervisor *s, sd_event *event, const char *config, const char *bus)
 {
 	*s = (struct supervisor){.event = event, .config = config, .bus = bus};
 	supervisor_block();
+	/* Without it nobody is watched, and all else goes on. */
+	int r = watchdog_open(&s->watchdog);
+	if (r >= 0)
+		r = sd_event_add_io(event, &s->watch_io, s->watchdog.fd, EPOLLIN, on_sign, s);
+	if (r >= 0)
+		r = sd_event_add_time_relative(event, &s->watch_timer, CLOCK_MONOTONIC, WATCH_US, 0, on_watch, s);
+	if (r < 0)
+		fprintf(stderr, "billiard: no watchdog: %s\n", strerror(-r));
 }
 
 /* In the child: becomes the program. Never returns. */
@@ -38,6 +90,7 @@ static _Noreturn void become(const struct supervised *c, const char *path, pid_t
 	prctl(PR_SET_PDEATHSIG, SIGTERM);
 	if (getppid() != parent)
 		_exit(0);
+	watchdog_invite(&c->supervisor->watchdog, SIGN_US);
 	execv(path, c->argv);
 	fprintf(stderr, "%s: %s\n", path, strerror(errno));
 	_exit(127);
@@ -73,6 +126,8 @@ static int launch(struct supervised *c, char *err, size_t err_size)
 		return r;
 	}
 	c->pid = pid;
+	c->launched = monotonic_us(c->supervisor);
+	c->heard = 0;
 	return 0;
 }
 
@@ -102,7 +157,11 @@ static void plan_restart(struct supervised *c)
 {
 	sd_event *event = c->supervisor->event;
 	c->restart = sd_event_source_unref(c->restart);
-	if (sd_event_add_time_relative(event, &c->restart, CLOCK_MONOTONIC, RESTART_US, 0, on_restart, c) < 0)
+	/* Who dies at once again and again is given longer and longer. */
+	bool at_once = monotonic_us(c->supervisor) - c->launched < SETTLED_US;
+	uint64_t longer = 2 * c->delay < RESTART_MAX_US ? 2 * c->delay : RESTART_MAX_US;
+	c->delay = at_once && c->restarts > 0 ? longer : RESTART_US;
+	if (sd_event_add_time_relative(event, &c->restart, CLOCK_MONOTONIC, c->delay, 0, on_restart, c) < 0)
 		fprintf(stderr, "billiard: %s cannot be started again\n", c->name);
 }
 
@@ -164,7 +223,7 @@ int supervisor_start(struct supervisor *s, const char *name, const char *argumen
 		return -ENOSPC;
 	}
 	struct supervised *c = &s->service[s->count++];
-	*c = (struct supervised){.supervisor = s};
+	*c = (struct supervised){.supervisor = s, .delay = RESTART_US};
 	snprintf(c->name, sizeof c->name, "%s", name);
 	c->argv = command_line(c, arguments);
 	if (!c->argv) {
@@ -215,5 +274,8 @@ void supervisor_finish(struct supervisor *s)
 			waitpid(c->pid, NULL, 0);
 	}
 	sd_event_source_disable_unref(s->kill_timer);
+	sd_event_source_disable_unref(s->watch_io);
+	sd_event_source_disable_unref(s->watch_timer);
+	watchdog_close(&s->watchdog);
 	*s = (struct supervisor){0};
 }

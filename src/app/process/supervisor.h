@@ -1,4 +1,4 @@
-/* Starts the services of a table as child processes, starts one again that failed, and stops them all. For use without systemd. */
+/* Starts the services of a table as child processes, starts one again that failed or hangs, and stops them all. For use without systemd. */
 #ifndef BILLIARD_APP_SUPERVISOR_H
 #define BILLIARD_APP_SUPERVISOR_H
 
@@ -6,6 +6,8 @@
 #include <stddef.h>
 #include <sys/types.h>
 #include <systemd/sd-event.h>
+
+#include "app/process/watchdog.h"
 
 enum { SUPERVISOR_MAX = 8 };
 
@@ -16,6 +18,9 @@ struct supervised {
 	pid_t pid;			  /* 0: not running */
 	sd_event_source *child, *restart; /* owned */
 	int restarts;
+	uint64_t launched; /* us, monotonic */
+	uint64_t heard;	   /* us, its last sign of life; 0: none yet, it is not watched */
+	uint64_t delay;	   /* us until it is started again: longer for those that die at once */
 };
 
 struct supervisor {
@@ -27,6 +32,8 @@ struct supervisor {
 	bool stopping;
 	int status;		     /* to exit with when all have gone */
 	sd_event_source *kill_timer; /* owned */
+	struct watchdog watchdog;
+	sd_event_source *watch_io, *watch_timer; /* owned */
 };
 
 /* Blocks SIGCHLD, as sd-event needs it: to be called before other threads exist (a bus starts one). */
