@@ -234,7 +234,7 @@ START_TEST(bench)
 	char self[4096], err[640];
 	part = getenv("BENCH_QUICK") ? 4 : 1;
 	ssize_t n = readlink("/proc/self/exe", self, sizeof self - 1);
-	if (n < 0 || config_load(&config, "config/thesis-table.conf", err, sizeof err) != 0)
+	if (n < 0 || config_load(&config, "config/thesis.conf", err, sizeof err) != 0)
 		stop("no configuration");
 	self[n] = '\0';
 	struct report *report = report_open(dirname(dirname(self)), "bench.json");

@@ -225,7 +225,7 @@ START_TEST(soak)
 	double seconds = text ? strtod(text, NULL) : 600, end = clock_seconds() + seconds;
 	char self[4096], err[640];
 	ssize_t n = readlink("/proc/self/exe", self, sizeof self - 1);
-	ck_assert(n > 0 && config_load(&config, "config/thesis-table.conf", err, sizeof err) == 0);
+	ck_assert(n > 0 && config_load(&config, "config/thesis.conf", err, sizeof err) == 0);
 	self[n] = '\0';
 	struct random random = random_begin("soak of the planner");
 	client_begin(&client, &(struct planner_setup){NULL, 2, NULL});

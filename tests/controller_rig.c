@@ -49,7 +49,7 @@ bool ctl_moves_well(void)
 void ctl_setup(void)
 {
 	char err[640];
-	ck_assert_msg(config_load(&ctl.config, "config/thesis-table.conf", err, sizeof err) == 0, "%s", err);
+	ck_assert_msg(config_load(&ctl.config, "config/thesis.conf", err, sizeof err) == 0, "%s", err);
 	controller_init(&ctl.c, &ctl.config);
 	ctl.state = (billiard_table_state_t){.utime = 1000000, .calibration = 1, .markers = 4, .ball_count = 4};
 	ctl_place(0, COLOUR_WHITE, -0.3, 0);

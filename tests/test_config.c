@@ -11,6 +11,7 @@
 #include "harness.h"
 
 #define THESIS	"config/thesis-table.conf"
+#define THESIS_WAY "config/thesis.conf"
 #define SNOOKER "config/snooker-12ft.conf"
 
 enum { TEXT_MAX = 1 << 16, ERR_SIZE = 640 };
@@ -71,7 +72,7 @@ static void check_near(double value, double wanted)
 
 START_TEST(thesis_table_in_si)
 {
-	load(THESIS);
+	load(THESIS_WAY); /* the table of thesis-table.conf, and the thesis' player */
 	check_near(config.table.length, 1.881);
 	check_near(config.table.width, 0.943);
 	check_near(config.table.ball_radius, 0.02615);
@@ -93,7 +94,7 @@ START_TEST(thesis_table_in_si)
 	ck_assert_int_eq(config.markers.marker[3].id, 3);
 	ck_assert_uint_eq(config.planner.memory, (size_t)32 << 20);
 	ck_assert_str_eq(config.colours, "config/colours.json");
-	ck_assert_str_eq(config.path, THESIS);
+	ck_assert_str_eq(config.path, THESIS_WAY);
 	ck_assert_int_eq(config.model.ball, BALL_MODEL_THESIS);
 }
 END_TEST
@@ -158,13 +159,52 @@ START_TEST(jaws_of_the_big_table_leave_room)
 }
 END_TEST
 
-START_TEST(profiles_by_name)
+static void check_player(const char *name, double degrees, double share)
+{
+	const struct cost_profile *player = config_profile(&config, name);
+	ck_assert_ptr_nonnull(player);
+	check_near(player->error.angle, degrees * M_PI / 180);
+	check_near(player->error.speed, share);
+	ck_assert_int_eq(player->ranking, RANK_VALUE);
+	ck_assert(!player->any_first && !player->keep_flukes);
+}
+
+/* What is shipped is snooker as it is played: real balls, the rules, what a club player scores most with. */
+static void check_shipped_play(const char *path)
+{
+	load(path);
+	ck_assert_str_eq(config.model_name, "real");
+	ck_assert(config.infinity.rules);
+	ck_assert_str_eq(config.profile.name, "club");
+	check_player("beginner", 0.5, 0.1);
+	check_player("club", 0.3, 0.05);
+	check_player("professional", 0.1, 0.03);
+	ck_assert_ptr_nonnull(config_profile(&config, "thesis"));
+	ck_assert_ptr_null(config_profile(&config, "champion"));
+}
+
+START_TEST(shipped_play)
+{
+	check_shipped_play(THESIS);
+	check_shipped_play(SNOOKER);
+}
+END_TEST
+
+/* The thesis' own behaviour is a file of a few lines: its model, its cost, any ball; the table is the same. */
+START_TEST(the_way_of_the_thesis)
 {
 	load(THESIS);
-	ck_assert_ptr_nonnull(config_profile(&config, "beginner"));
-	ck_assert_ptr_nonnull(config_profile(&config, "professional"));
-	ck_assert_ptr_null(config_profile(&config, "champion"));
-	ck_assert_str_eq(config.profile.name, "thesis");
+	struct table table = config.table;
+	load(THESIS_WAY);
+	ck_assert_str_eq(config.model_name, "thesis");
+	ck_assert(!config.infinity.rules);
+	ck_assert_int_eq(config.profile.ranking, RANK_THESIS);
+	ck_assert_mem_eq(&config.table, &table, sizeof table);
+	struct cost_profile thesis = cost_profile_thesis();
+	check_near(config.profile.max_cut, thesis.max_cut);
+	check_near(config.profile.clearance, thesis.clearance);
+	check_near(config.profile.w_points, thesis.w_points);
+	ck_assert(config.profile.any_first && config.profile.keep_flukes && config.profile.program_speed);
 }
 END_TEST
 
@@ -216,11 +256,11 @@ static const struct {
 	 "table.cushions[2].from[1]: found 9999.0, allowed 2 numbers"},
 	{"jaws = ()", "jaws = 3", "table.jaws: found 3, allowed a list ( ) of 0 to 32 groups"},
 	{"jaws = ()", "jaws = ( 3 )", "table.jaws[0]: found 3, allowed a group { }"},
-	{"model = \"thesis\"", "model = \"thesi\"",
+	{"model = \"real\"", "model = \"thesi\"",
 	 "model: found \"thesi\", allowed thesis, simple, simple-elastic, real, real-mathavan"},
 	{"scheme = \"steal\"", "scheme = \"theft\"",
 	 "planner.scheme: found \"theft\", allowed batch, windows, queue, steal"},
-	{"profile = \"thesis\"", "profile = \"pro\"", "profile: found \"pro\", allowed a name from profiles"},
+	{"profile = \"club\"", "profile = \"pro\"", "profile: found \"pro\", allowed a name from profiles"},
 	{"id = 3", "id = 1", "markers.list[3].id: found 1, allowed each id once"},
 	{"id = 3", "id = 4", "markers.list[3].id: found 4, allowed each id once and below dictionary_count"},
 	{"900.0, 0.0, 960.0", "0.0, 0.0, 960.0", "projector.homography: found a singular matrix"},
@@ -436,7 +476,8 @@ Suite *test_suite(void)
 	tcase_add_test(files, snooker_table_by_the_rules);
 	tcase_add_test(files, geometry_of_both);
 	tcase_add_test(files, jaws_of_the_big_table_leave_room);
-	tcase_add_test(files, profiles_by_name);
+	tcase_add_test(files, shipped_play);
+	tcase_add_test(files, the_way_of_the_thesis);
 	tcase_add_test(files, projector_shows_the_table);
 	tcase_add_test(files, default_path);
 	tcase_add_test(files, every_key_is_documented);

@@ -88,7 +88,7 @@ static bool ball_passes(const billiard_ball_t *message)
 static void load(void)
 {
 	char err[640];
-	ck_assert_msg(config_load(&config, "config/thesis-table.conf", err, sizeof err) == 0, "%s", err);
+	ck_assert_msg(config_load(&config, "config/thesis.conf", err, sizeof err) == 0, "%s", err);
 	make_request();
 }
 

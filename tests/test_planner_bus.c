@@ -19,7 +19,7 @@ static struct config config; /* too large for the stack */
 static void begin(const char *scheme, int workers)
 {
 	char err[640];
-	ck_assert_msg(config_load(&config, "config/thesis-table.conf", err, sizeof err) == 0, "%s", err);
+	ck_assert_msg(config_load(&config, "config/thesis.conf", err, sizeof err) == 0, "%s", err);
 	client_begin(&client, &(struct planner_setup){scheme, workers, NULL});
 }
 

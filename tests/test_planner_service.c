@@ -23,7 +23,7 @@ static billiard_plan_t answer, last;
 static void setup(void)
 {
 	char err[640];
-	ck_assert_msg(config_load(&config, "config/thesis-table.conf", err, sizeof err) == 0, "%s", err);
+	ck_assert_msg(config_load(&config, "config/thesis.conf", err, sizeof err) == 0, "%s", err);
 	config.planner.workers = 2;
 	ck_assert_msg(planner_service_create(&service, &config, err, sizeof err) == 0, "%s", err);
 }
