@@ -47,6 +47,19 @@ static int points_of(const struct ball *ball)
 	return ball->colour >= COLOUR_RED && ball->colour <= COLOUR_BLACK ? (int)ball->colour : 0;
 }
 
+/* Any ball is on: what the balls but one may bring. */
+static double practice_visit(const struct estimator *e, const struct setting *from)
+{
+	static const double POINTS = 3; /* of a ball, about */
+	double sum = 0;
+	int left = -1;
+	for (int i = 0; i < from->count; i++)
+		left += rules_ball_on(from->rules, from->ball, from->count, i);
+	for (int i = 0; i < left; i++)
+		sum = e->flow * (POINTS + sum);
+	return sum;
+}
+
 /* What the visit may bring after this pot. */
 static double after_pot(const struct estimator *e, const struct setting *from, int index)
 {
@@ -61,7 +74,7 @@ static double after_pot(const struct estimator *e, const struct setting *from, i
 			return 0;
 		return e->going_on[ON_CLEARANCE][from->ball[index].colour + 1];
 	default:
-		return e->going_on[ON_ANY][1];
+		return practice_visit(e, from);
 	}
 }
 
@@ -70,7 +83,7 @@ static double average_visit(const struct estimator *e, const struct setting *fro
 {
 	int reds = count_reds(from);
 	if (from->rules->on == ON_ANY)
-		return e->going_on[ON_ANY][1];
+		return 0; /* practice: no opponent gains by a miss */
 	if (reds > 0)
 		return e->going_on[ON_RED][reds];
 	for (int c = COLOUR_YELLOW; c <= COLOUR_BLACK; c++)
@@ -90,7 +103,6 @@ static void fill_going_on(struct estimator *e)
 		if (reds > 0)
 			e->going_on[ON_RED][reds] = f * (1 + e->going_on[ON_COLOUR][reds - 1]);
 		e->going_on[ON_COLOUR][reds] = f * (COLOUR_POINTS + e->going_on[ON_RED][reds]);
-		e->going_on[ON_ANY][reds] = f < 1 ? fmin(20, f * 3 / (1 - f)) : 20;
 	}
 }
 

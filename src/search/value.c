@@ -92,10 +92,10 @@ double value_of_outcome(struct value_search *v, struct value_worker *worker, con
 		return record->points +
 		       (deep ? value_next_shot(v, worker, &next) : estimate_value(&v->estimator, &next));
 	}
-	struct rules_state theirs = outcome->next;
-	if (outcome->next.on != ON_ANY)
-		theirs = record->foul > 0 ? rules_opponent(v->table, outcome, count)
-					  : rules_state_from_position(outcome->ball, count);
+	if (outcome->next.on == ON_ANY)
+		return -record->foul; /* practice: no opponent, and a miss gains nothing */
+	struct rules_state theirs = record->foul > 0 ? rules_opponent(v->table, outcome, count)
+						     : rules_state_from_position(outcome->ball, count);
 	theirs.in_hand = outcome->cue_potted;
 	theirs.any_first = outcome->next.any_first;
 	const struct setting next = {v->table, &v->model, outcome->ball, count, &theirs};
