@@ -198,6 +198,9 @@ static void read_trace(struct virtual_table *vt, int cue)
 	struct player_result *result = &vt->result;
 	for (int i = 0; i < vt->trace.count; i++) {
 		const struct event *event = &vt->trace.entry[i].event;
+		/* A ball that only turns on the spot lies still to everybody who looks. */
+		if (event->kind != EVENT_SPINNING_REST)
+			result->duration = event->time;
 		bool of_cue = event->ball == cue || event->other == cue;
 		if (event->kind == EVENT_BALL_BALL && of_cue && result->first < 0)
 			result->first = event->ball == cue ? event->other : event->ball;
@@ -206,7 +209,6 @@ static void read_trace(struct virtual_table *vt, int cue)
 			result->potted[result->potted_count++].pocket = event->other;
 		}
 	}
-	result->duration = trace_end(&vt->trace);
 }
 
 int player_play(struct virtual_table *vt, const struct shot *shot, double now, char *err, size_t err_size)

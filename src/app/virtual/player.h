@@ -20,7 +20,7 @@ struct player_result {
 	int potted_count;
 	int points, foul;
 	bool cue_potted, respot_failed;
-	double duration; /* s of the table's time from strike to rest */
+	double duration; /* s of the table's time from strike until no ball goes on; one may still turn on the spot */
 };
 
 /* About 1 MB: not for the stack. */
