@@ -54,7 +54,7 @@ START_TEST(simple_keeps_momentum_and_separates)
 	const char *const names[] = {"simple-elastic", "simple"};
 	for (int i = 0; i < 20000; i++) {
 		struct model model = model_named(names[i & 1]);
-		double e = contact_restitution(&table, &model);
+		double e = contact_restitution(&table, &model, 1);
 		struct ball a, b;
 		random_pair(&r, &table, &a, &b);
 		vec2 n = vec2_unit(b.pos), before = momentum(&a, &b);
@@ -189,6 +189,41 @@ START_TEST(restitution_falls_with_speed)
 			contact_cushion(&table, &model, &nose, &b);
 			ck_assert_double_eq_tol(b.vel.x, -v * 0.9 / (1 + 0.08 * v), 1e-3 * v);
 			ck_assert_double_eq_tol(b.vel.y, 0.3, 1e-3 * v);
+		}
+	}
+}
+END_TEST
+
+/* The same between balls: single contacts of both models, and two at once. */
+START_TEST(balls_that_hit_harder_lose_more)
+{
+	struct table table = scene_box_table(3, 1.5);
+	table.material.ball_fall = 0.01;
+	double d = 2 * table.ball_radius;
+	for (double v = 0.02; v < 9; v *= 1.9) {
+		double e = 0.95 / (1 + 0.01 * v);
+		for (int k = 0; k < 2; k++) {
+			struct model model = model_named(k ? "real" : "simple");
+			struct ball a = moving((vec2){0, 0}, (vec2){v, 0}, BALL_SLIDING, &table);
+			struct ball b = ball_at(COLOUR_RED, (vec2){d, 0});
+			contact_balls(&table, &model, &a, &b);
+			ck_assert_double_eq_tol(b.vel.x - a.vel.x, e * v, 1e-14 * v);
+			/* one between two, all touching: each contact has half the geometry's approach */
+			model.pocket = POCKET_MODEL_NONE;
+			double half = sqrt(0.75), u = v * half;
+			struct ball ball[3] = {moving((vec2){-d * half, 0}, (vec2){v, 0}, BALL_SLIDING, &table),
+					       ball_at(COLOUR_RED, (vec2){0, d / 2}),
+					       ball_at(COLOUR_RED, (vec2){0, -d / 2})};
+			static struct sim sim;
+			sim_init(&sim, &table, &model, ball, 3);
+			table.material.mu_ball_a = table.material.mu_ball_b = 0;
+			struct group group = {.contact = {{0, EVENT_BALL_BALL, 0, 1}, {0, EVENT_BALL_BALL, 0, 2}},
+					      .count = 2,
+					      .balls = 7};
+			collide_balls(&sim, &group);
+			vec2 n = {half, 0.5};
+			double leave = vec2_dot(vec2_sub(sim.ball[1].vel, sim.ball[0].vel), n);
+			ck_assert_double_eq_tol(leave, 0.95 / (1 + 0.01 * u) * u, 1e-3 * v);
 		}
 	}
 }
@@ -467,6 +502,7 @@ Suite *test_suite(void)
 	tcase_add_test(tcase, thesis_topspin_gains_so_much);
 	tcase_add_test(tcase, cushions_mirror);
 	tcase_add_test(tcase, restitution_falls_with_speed);
+	tcase_add_test(tcase, balls_that_hit_harder_lose_more);
 	tcase_add_test(tcase, a_cushion_of_its_own);
 	tcase_add_test(tcase, one_on_two);
 	tcase_add_test(tcase, clusters);

@@ -30,6 +30,7 @@ struct cluster {
 	int begun_count;
 	double stiffness; /* m^-1/2 s^-2, force per mass of one ball and d^(3/2) */
 	double damping;	  /* the same for d^(1/4) and the speed of approach */
+	double share;	  /* of the normal impulse, that friction is taken of: 2 e / (1 + e) */
 	double dt;	  /* s */
 	const struct table *table;
 };
@@ -156,7 +157,7 @@ static void rub(struct cluster *c, const struct bond *bond, vec2 n, double push)
 	double size = vec2_norm(slip);
 	if (size == 0)
 		return;
-	double mu = 2 * m->e_ball / (1 + m->e_ball) * (m->mu_ball_a + m->mu_ball_b * exp(-m->mu_ball_c * size));
+	double mu = c->share * (m->mu_ball_a + m->mu_ball_b * exp(-m->mu_ball_c * size));
 	vec2 impulse = vec2_scale(slip, -fmin(mu * push / size, 1.0 / 14));
 	a->rub = vec2_madd(a->rub, impulse.x, vec2_perp(n));
 	b->rub = vec2_madd(b->rub, -impulse.x, vec2_perp(n));
@@ -275,13 +276,14 @@ bool cluster_collide(struct sim *sim, struct group *group)
 	double speed = fastest_approach(sim, group), stiffness = stiffness_of(table);
 	if (speed < CLUSTER_SPEED)
 		return false;
-	double lasts = contact_time(stiffness, speed);
+	double lasts = contact_time(stiffness, speed), e = contact_restitution(table, &sim->model, speed);
 	struct ball now[BALL_MAX];
 	uint32_t balls = within_reach(sim, group, speed, lasts, now);
 	if (__builtin_popcount(balls) < 3)
 		return false;
 	struct cluster c = {.stiffness = stiffness,
-			    .damping = damping_of(stiffness, contact_restitution(table, &sim->model)),
+			    .damping = damping_of(stiffness, e),
+			    .share = 2 * e / (1 + e),
 			    .dt = lasts / CLUSTER_STEPS,
 			    .table = table};
 	add_bodies(&c, balls, now);

@@ -118,6 +118,7 @@ struct joint {
 	struct ball *a, *b;
 	vec2 n;		/* unit, from a to b */
 	double target;	/* separation speed after the contact */
+	double e;	/* restitution */
 	double impulse; /* per mass, so far */
 	double change;
 };
@@ -167,9 +168,10 @@ static int most_contacts(const struct group *group)
 static void rub_joints(const struct table *table, const struct joint *joint, int count, double share)
 {
 	vec2 impulse[GROUP_MAX];
-	double approach = 2 / (1 + table->material.e_ball);
-	for (int i = 0; i < count; i++)
-		impulse[i] = contact_ball_friction(table, joint[i].a, joint[i].b, approach * joint[i].impulse, share);
+	for (int i = 0; i < count; i++) {
+		const struct joint *j = &joint[i];
+		impulse[i] = contact_ball_friction(table, j->a, j->b, j->e * (2 / (1 + j->e) * j->impulse), share);
+	}
 	for (int i = 0; i < count; i++)
 		contact_ball_rub(table, impulse[i], joint[i].a, joint[i].b);
 }
@@ -180,14 +182,15 @@ static void collide_jointly(struct sim *sim, const struct group *group)
 	struct joint joint[GROUP_MAX];
 	enum ball_phase phase[BALL_MAX];
 	double speed = 0;
-	double restitution = contact_restitution(table, &sim->model), left = contact_speed_left(table, &sim->model);
+	double left = contact_speed_left(table, &sim->model);
 	for (int i = 0; i < sim->ball_count; i++)
 		phase[i] = sim->ball[i].phase;
 	for (int i = 0; i < group->count; i++) {
 		struct ball *a = &sim->ball[group->contact[i].ball], *b = &sim->ball[group->contact[i].other];
 		vec2 n = vec2_unit(vec2_sub(b->pos, a->pos));
 		double approach = vec2_dot(vec2_sub(a->vel, b->vel), n);
-		joint[i] = (struct joint){a, b, n, restitution * fmax(approach, 0), 0, 0};
+		double e = contact_restitution(table, &sim->model, fmax(approach, 0));
+		joint[i] = (struct joint){.a = a, .b = b, .n = n, .target = e * fmax(approach, 0), .e = e};
 		speed = fmax(speed, approach);
 	}
 	double share = 1.0 / most_contacts(group);

@@ -3,10 +3,10 @@
 #include "physics/contact_real.h"
 #include "physics/motion.h"
 
-double contact_restitution(const struct table *table, const struct model *model)
+double contact_restitution(const struct table *table, const struct model *model, double speed)
 {
 	bool loses = model->ball == BALL_MODEL_RESTITUTION || model->ball == BALL_MODEL_FRICTIONAL;
-	return loses ? table->material.e_ball : 1;
+	return loses ? ball_restitution(&table->material, speed) : 1;
 }
 
 double contact_speed_left(const struct table *table, const struct model *model)
@@ -32,10 +32,11 @@ void contact_set_phase(const struct table *table, const struct model *model, enu
 }
 
 /* Equal masses, no friction: the normal components are exchanged, the approach times e. */
-static void exchange(double restitution, struct ball *a, struct ball *b)
+static void exchange(const struct table *table, const struct model *model, struct ball *a, struct ball *b)
 {
 	vec2 n = vec2_unit(vec2_sub(b->pos, a->pos));
-	double impulse = 0.5 * (1 + restitution) * vec2_dot(vec2_sub(a->vel, b->vel), n);
+	double approach = vec2_dot(vec2_sub(a->vel, b->vel), n);
+	double impulse = 0.5 * (1 + contact_restitution(table, model, approach)) * approach;
 	a->vel = vec2_madd(a->vel, -impulse, n);
 	b->vel = vec2_madd(b->vel, impulse, n);
 }
@@ -69,7 +70,7 @@ void contact_balls(const struct table *table, const struct model *model, struct 
 	switch (model->ball) {
 	case BALL_MODEL_ELASTIC:
 	case BALL_MODEL_RESTITUTION:
-		exchange(contact_restitution(table, model), a, b);
+		exchange(table, model, a, b);
 		break;
 	case BALL_MODEL_THESIS:
 		thesis_balls(table, a, b);

@@ -11,9 +11,9 @@ void contact_balls(const struct table *table, const struct model *model, struct 
 /* A ball that approaches a cushion at nose->normal. */
 void contact_cushion(const struct table *table, const struct model *model, const struct nose *nose, struct ball *ball);
 
-/* Restitution of the model's frictionless part, and the share of speed that a contact leaves: what a simultaneous
+/* Restitution of the model's frictionless part at an approach speed (m/s, at least 0), and the share of speed that a contact leaves: what a simultaneous
  * contact of more than two balls is solved with. */
-double contact_restitution(const struct table *table, const struct model *model);
+double contact_restitution(const struct table *table, const struct model *model, double speed);
 double contact_speed_left(const struct table *table, const struct model *model);
 
 /* Phase after a contact; phase is that before it and matters only in thesis motion: a rolling ball rolls on, any other

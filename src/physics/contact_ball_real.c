@@ -43,12 +43,12 @@ static vec2 surface_slip(vec2 n, double r, const struct ball *a, const struct ba
 	return (vec2){va.y - vb.y + r * (a->spin[2] + b->spin[2]), -r * spin.y};
 }
 
-vec2 contact_ball_friction(const struct table *table, const struct ball *a, const struct ball *b, double approach,
+vec2 contact_ball_friction(const struct table *table, const struct ball *a, const struct ball *b, double impulse,
 			   double share)
 {
 	vec2 n = vec2_unit(vec2_sub(b->pos, a->pos));
 	vec2 slip = surface_slip(n, table->ball_radius, a, b);
-	return friction_impulse(&table->material, slip, table->material.e_ball * approach, share);
+	return friction_impulse(&table->material, slip, impulse, share);
 }
 
 void contact_ball_rub(const struct table *table, vec2 impulse, struct ball *a, struct ball *b)
@@ -69,11 +69,12 @@ void contact_ball_frictional(const struct table *table, struct ball *a, struct b
 	double approach = vec2_dot(vec2_sub(a->vel, b->vel), n);
 	assert(approach >= 0);
 
+	double e = ball_restitution(m, approach);
 	vec2 slip = surface_slip(n, r, a, b);
 	/* The reference shots take the separation speed, e times the approach speed, for the impulse that friction is a
 	 * share of; Coulomb's law has (1 + e) / 2 of it, 2.6 % more at e = 0.95. */
-	vec2 friction = friction_impulse(m, slip, m->e_ball * approach, 1);
-	double normal = 0.5 * (1 + m->e_ball) * approach;
+	vec2 friction = friction_impulse(m, slip, e * approach, 1);
+	double normal = 0.5 * (1 + e) * approach;
 	vec2 change = from_line(n, (vec2){-normal, friction.x});
 	a->vel = vec2_add(a->vel, change);
 	b->vel = vec2_sub(b->vel, change);

@@ -13,9 +13,10 @@
 void contact_ball_frictional(const struct table *table, struct ball *a, struct ball *b);
 
 /* The friction of the same law alone, for contacts that are solved together: impulse per mass (m/s, across the line of
- * centres and upward) at a contact whose normal impulse is that of the approach speed, at most what ends the share of
- * the slip; and what such an impulse does to the balls. Normal velocities stay. */
-vec2 contact_ball_friction(const struct table *table, const struct ball *a, const struct ball *b, double approach,
+ * centres and upward) where friction is a share of this normal impulse (m/s; e times the approach in the law of a single
+ * contact), at most what ends the share of the slip; and what such an impulse does to the balls. Normal velocities
+ * stay. */
+vec2 contact_ball_friction(const struct table *table, const struct ball *a, const struct ball *b, double impulse,
 			   double share);
 void contact_ball_rub(const struct table *table, vec2 impulse, struct ball *a, struct ball *b);
 

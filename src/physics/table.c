@@ -60,6 +60,7 @@ static int check_material(const struct material *m, char *err, size_t err_size)
 		{"mu_ball_a", m->mu_ball_a, 0, 2},
 		{"mu_ball_b", m->mu_ball_b, 0, 2},
 		{"mu_ball_c", m->mu_ball_c, 0, 100},
+		{"ball_fall", m->ball_fall, 0, 1},
 		{"cushion_fall", m->cushion_fall, 0, 1},
 		{"cue_end_mass", m->cue_end_mass, 0, 0.1},
 		{"stronge_omega", m->stronge_omega, 0, 100},
@@ -237,6 +238,11 @@ struct nose table_nose(const struct table *table, vec2 normal, double height)
 double nose_restitution(const struct table *table, const struct nose *nose, double speed)
 {
 	return nose->e / (1 + table->material.cushion_fall * speed);
+}
+
+double ball_restitution(const struct material *material, double speed)
+{
+	return material->e_ball / (1 + material->ball_fall * speed);
 }
 
 int table_pocket(const struct table *table, const char *name)

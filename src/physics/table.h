@@ -68,9 +68,10 @@ struct material {
 	double topspin_factor; /* A: m/s for variant 1, share for variant 2 */
 
 	/* models "simple" and "real" */
-	double e_ball;	     /* restitution ball on ball */
-	double e_cushion;    /* restitution at a cushion */
-	double mu_cushion;   /* friction at a cushion */
+	double ball_fall;  /* s/m: restitution at approach speed v is e_ball / (1 + ball_fall v); 0: the same at all */
+	double e_ball;	   /* restitution ball on ball */
+	double e_cushion;  /* restitution at a cushion */
+	double mu_cushion; /* friction at a cushion */
 	double cushion_fall; /* s/m: restitution at approach speed v is e / (1 + cushion_fall v); 0: the same at all */
 	double cue_end_mass; /* kg that the cue's end moves aside with: squirt; 0: none */
 	double mu_ball_a, mu_ball_b, mu_ball_c; /* mu = a + b exp(-c v), v slip in m/s: Alciatore TP A.14 */
@@ -114,6 +115,9 @@ struct nose table_nose(const struct table *table, vec2 normal, double height);
 
 /* Restitution of a nose at an approach speed (m/s, at least 0). */
 double nose_restitution(const struct table *table, const struct nose *nose, double speed);
+
+/* Restitution of two balls at an approach speed (m/s, at least 0). */
+double ball_restitution(const struct material *material, double speed);
 
 /* Pocket of that name, -1 when there is none. */
 int table_pocket(const struct table *table, const char *name);

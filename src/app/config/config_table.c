@@ -128,6 +128,7 @@ static const struct config_key material_keys[] = {
 	NUMBER("e_ball", UNIT_NONE, 0.1, 1, AT(config.table.material.e_ball)),
 	NUMBER("e_cushion", UNIT_NONE, 0.1, 1, AT(config.table.material.e_cushion)),
 	NUMBER("mu_cushion", UNIT_NONE, 0, 1, AT(config.table.material.mu_cushion)),
+	NUMBER_OR(0, "ball_fall", UNIT_S_M, 0, 1, AT(config.table.material.ball_fall)),
 	NUMBER_OR(0, "cushion_fall", UNIT_S_M, 0, 1, AT(config.table.material.cushion_fall)),
 	NUMBER_OR(0, "cue_end_mass", UNIT_KG, 0, 0.1, AT(config.table.material.cue_end_mass)),
 	NUMBER("mu_ball_a", UNIT_NONE, 0, 1, AT(config.table.material.mu_ball_a)),
