@@ -22,7 +22,7 @@ PHYSICS := ball bed cluster collide contact contact_ball_real contact_mathavan c
 SEARCH := acceptance budget candidate cost crew estimate export figures frontier geometry plan player_error pool rank refine request respot \
 	rules safety scheme share_queue share_steal share_windows shot slot snookered solutions start state step stroke tolerance \
 	value value_open value_race value_safety why worth
-VISION := calibration camera colour detector fit linear marker_edges outline pose reason scan scan_changes scan_cloth scan_copy scan_marks scan_place seeds stabilise stages track vision
+VISION := calibration camera colour detector fit linear marker_edges outline pose reason region scan scan_changes scan_cloth scan_copy scan_marks scan_place seeds stabilise stages track vision
 VISION_CV := capture_cv image_io_cv markers_cv marker_image_cv
 # app: what the programs share, room by room
 APP_PROCESS := ball_message bus clock frame_slot frame_source message_check message_table options process process_options process_status supervisor text watchdog

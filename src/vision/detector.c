@@ -13,6 +13,9 @@ static const double SUPPORT_ROUGH = 0.17; /* less in the first round */
 static const double SUPPORT_CROWDED = 0.75,
 		    RING_FREE = 0.35; /* more of it is wanted where it lies among other foreign things */
 static const double COVER_MIN = 0.55;
+static const double PART_SUPPORT = 0.75; /* with less rim it may be part of something larger ... */
+static const double PART_AREA = 2;	 /* ... than so many balls */
+static const double PART_REACH = 1.15;	 /* radii that a ball, with its shadow, and a pocket reach to */
 static const double SCALE_MIN = 0.86, SCALE_MAX = 1.085;
 static const double USUAL_SCALE = 0.965, USUAL_SPREAD = 0.02; /* apparent radius of any ball */
 static const double LIKE_SPREAD = 0.004;		      /* the same among balls of one look in one frame */
@@ -28,6 +31,8 @@ int detector_init(struct detector *d, const struct table *table, const struct co
 	int rc = scan_init(&d->scan, width, height);
 	if (rc == 0)
 		rc = seeds_init(&d->seeds, width, height);
+	if (rc == 0)
+		rc = region_init(&d->region, width, height);
 	if (rc < 0)
 		detector_finish(d);
 	return rc;
@@ -37,6 +42,7 @@ void detector_finish(struct detector *d)
 {
 	scan_finish(&d->scan);
 	seeds_finish(&d->seeds);
+	region_finish(&d->region);
 }
 
 bool detector_place(struct detector *d, const struct camera *camera)
@@ -220,7 +226,42 @@ static bool looks_like_cloth(const struct sighting *c)
 	return off < bar && mean > CLOTH_DARK && mean < CLOTH_LIGHT;
 }
 
-static enum refusal judge(const struct detector *d, const struct sighting *c, double relief)
+static struct region_disc disc_of(const struct sighting *c)
+{
+	return (struct region_disc){c->fit.outline.centre, PART_REACH * c->fit.outline.radius_px};
+}
+
+static int pocket_discs(const struct detector *d, struct region_disc *out)
+{
+	int count = 0;
+	for (int i = 0; i < d->table->pocket_count; i++) {
+		const struct pocket *p = &d->table->pocket[i];
+		vec2 side;
+		if (!camera_project(d->view.camera, p->centre, 0, &out[count].px) ||
+		    !camera_project(d->view.camera, (vec2){p->centre.x + PART_REACH * p->radius, p->centre.y}, 0,
+				    &side))
+			continue;
+		out[count].radius = vec2_dist(out[count].px, side);
+		count++;
+	}
+	return count;
+}
+
+/* Hands, sleeves and cues have edges that pass for a poor rim: they hang together with more than balls do. */
+static bool is_part(struct detector *d, const struct sighting *c)
+{
+	struct region_disc disc[1 + DETECT_MAX + POCKET_MAX] = {disc_of(c)};
+	int count = 1;
+	for (int i = 0; i < d->count; i++)
+		if (&d->candidate[i] != c && d->candidate[i].fit.support >= PART_SUPPORT)
+			disc[count++] = disc_of(&d->candidate[i]);
+	count += pocket_discs(d, disc + count);
+	double radius = c->fit.outline.radius_px / d->scan.factor, area = 3.14159 * radius * radius;
+	int limit = (int)(PART_AREA * area);
+	return region_beyond(&d->region, &d->scan, disc, count, limit) >= limit;
+}
+
+static enum refusal judge(struct detector *d, const struct sighting *c, double relief)
 {
 	if (!detect_possible(d->table, c->fit.pos))
 		return REFUSED_PLACE;
@@ -230,6 +271,8 @@ static enum refusal judge(const struct detector *d, const struct sighting *c, do
 		return REFUSED_RIM;
 	if (c->fit.scale < SCALE_MIN || c->fit.scale > SCALE_MAX)
 		return REFUSED_SIZE;
+	if (c->tag < 0 && c->fit.support < PART_SUPPORT && is_part(d, c))
+		return REFUSED_PART;
 	return REFUSED_NOT;
 }
 

@@ -4,6 +4,7 @@
 
 #include "vision/colour.h"
 #include "vision/fit.h"
+#include "vision/region.h"
 #include "vision/scan.h"
 #include "vision/seeds.h"
 #include "vision/stages.h"
@@ -11,7 +12,16 @@
 enum { DETECT_MAX = 48 };
 
 /* Why a candidate was refused; for pictures and statistics. */
-enum refusal { REFUSED_NOT, REFUSED_PLACE, REFUSED_FIT, REFUSED_DOUBLE, REFUSED_RIM, REFUSED_INSIDE, REFUSED_SIZE };
+enum refusal {
+	REFUSED_NOT,
+	REFUSED_PLACE,
+	REFUSED_FIT,
+	REFUSED_DOUBLE,
+	REFUSED_RIM,
+	REFUSED_INSIDE,
+	REFUSED_SIZE,
+	REFUSED_PART
+};
 
 struct sighting {
 	struct fit fit;
@@ -32,6 +42,7 @@ struct detector {
 	const struct stage_watch *watch;	 /* borrowed; NULL: nobody looks */
 	struct scan scan;
 	struct seeds seeds;
+	struct region region;
 	struct fit_view view; /* frame and camera from begin to settle */
 	struct fit neighbour[DETECT_MAX];
 	int count;

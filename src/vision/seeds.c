@@ -268,6 +268,8 @@ void seeds_find(struct seeds *seeds, const struct scan *scan, const uint8_t *act
 {
 	size_t n = (size_t)scan->width * (size_t)scan->height;
 	seeds->count = 0;
+	if (active && !memchr(active, 1, (size_t)(scan->cells_x * scan->cells_y)))
+		return;
 	memset(seeds->vote, 0, sizeof(*seeds->vote) * n);
 	memset(seeds->sum, 0, sizeof(*seeds->sum) * n);
 	run_pass(seeds, scan, active, vote_row);

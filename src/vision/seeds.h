@@ -29,7 +29,7 @@ int seeds_init(struct seeds *seeds, int width, int height); /* 0 or -ENOMEM */
 void seeds_finish(struct seeds *seeds);
 /* Shapes for the scan's present place. */
 bool seeds_place(struct seeds *seeds, const struct scan *scan, const struct camera *camera, const struct table *table);
-/* Votes, and their peaks, within the cells that are set in active (one byte a cell of the scan; NULL: all). */
+/* Votes, and their peaks, within the cells that are set in active (one byte a cell of the scan, 0 or 1; NULL: all). */
 void seeds_find(struct seeds *seeds, const struct scan *scan, const uint8_t *active);
 
 #endif

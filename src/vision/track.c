@@ -1,5 +1,6 @@
 #include "vision/track.h"
 
+#include <limits.h>
 #include <math.h>
 #include <string.h>
 
@@ -215,6 +216,14 @@ static bool is_sure(const struct sighting *c)
 	return c->confidence >= TRACK_SURE;
 }
 
+/* Beside a hand a poor rim may be the hand's: no number of looks makes it a ball. */
+static int looks_needed(const struct tracker *t, const struct sighting *c)
+{
+	if (c->fit.support > CONFIRM_SUPPORT)
+		return LOOKS_SURE;
+	return t->occluded ? INT_MAX : LOOKS_UNSURE;
+}
+
 /* A resting ball and what the frame shows in its place: where they differ the frame is right, if it is clear. */
 static void believe(struct tracker *t, struct track *k, const struct sighting *c)
 {
@@ -229,10 +238,8 @@ static void believe(struct tracker *t, struct track *k, const struct sighting *c
 	if (elsewhere)
 		k->steady = stabilise_begin(c->fit.pos, t->time);
 	update(t, k, c);
-	if (!k->confirmed && k->looked < (is_sure(c) ? LOOKS_SURE : LOOKS_UNSURE))
-		t->judged = false;
-	else
-		k->confirmed = true;
+	k->confirmed = k->confirmed || k->looked >= looks_needed(t, c);
+	t->judged = t->judged && k->confirmed;
 }
 
 /* Nearest first, within a ball's place. */
@@ -318,7 +325,7 @@ bool tracker_wants_look(const struct tracker *t, double time, bool worried)
 		return true;
 	for (int i = 0; i < TRACK_MAX && !worried; i++) {
 		const struct track *k = &t->track[i];
-		worried = k->id != 0 && (k->misses > 0 || k->disputed || !is_sure(&k->seen));
+		worried = k->id != 0 && ((k->misses > 0 && !t->occluded) || k->disputed || !is_sure(&k->seen));
 	}
 	return time - t->look_time > (worried || !t->judged ? LOOK_DOUBT : LOOK_INTERVAL);
 }

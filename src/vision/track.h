@@ -32,6 +32,7 @@ struct tracker {
 	double time;	  /* s, of the last frame */
 	double look_time; /* s, of the last whole look */
 	bool judged;	  /* a whole look has found everything as it is reported, and nothing has moved since */
+	bool occluded;	  /* the caller's: something large was over the table in the last frame */
 	int hurry;	  /* whole looks in a row that changed something */
 	struct track track[TRACK_MAX];
 	int fitted; /* balls fitted in the last frame, for statistics */

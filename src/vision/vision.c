@@ -138,7 +138,7 @@ int vision_refusals(const struct vision *vision, struct vision_refusal *out, int
 		[REFUSED_NOT] = "accepted",	  [REFUSED_PLACE] = "no place for a ball",
 		[REFUSED_FIT] = "no rim found",	  [REFUSED_DOUBLE] = "two in one",
 		[REFUSED_RIM] = "too little rim", [REFUSED_INSIDE] = "inside like cloth",
-		[REFUSED_SIZE] = "wrong size",
+		[REFUSED_SIZE] = "wrong size",	  [REFUSED_PART] = "part of something large",
 	};
 	const struct detector *d = &vision->detector;
 	for (int i = 0; i < d->refused_count && i < capacity; i++) {
@@ -325,7 +325,7 @@ static void report_tracks(struct vision *v, struct vision_result *r)
 	assign_colours(v, look, r);
 	report_doubt(r, v->tracker.judged);
 	v->cue_missing = (r->doubt & DOUBT_NO_CUE) != 0;
-	r->occluded = is_occluded(v, r);
+	r->occluded = v->tracker.occluded = is_occluded(v, r);
 }
 
 static bool is_resting(const struct vision *v)
