@@ -91,6 +91,33 @@ START_TEST(test_at_most_one_of_each_and_none_forced)
 }
 END_TEST
 
+/* Two that look pink, one of them a little like red as well: the other keeps the pink, though it is the less likely pink. */
+START_TEST(test_who_has_less_to_lose_gives_way)
+{
+	struct colour_model model = {.unknown_distance = 9};
+	for (int k = COLOUR_RED; k <= COLOUR_PINK; k += COLOUR_PINK - COLOUR_RED) {
+		model.class[k] = (struct colour_class){.samples = 9, .scale = 1, .scale_spread = 0.02};
+		model.class[k].mean[0] = k == COLOUR_RED ? 0.1 : 0;
+		for (int i = 0; i < COLOUR_FEATURES; i++)
+			model.class[k].covariance[i][i] = 0.01;
+	}
+	struct colour_classifier classifier = colour_classifier(&model);
+	struct colour_feature feature[2] = {{{0}}, {{-0.2}}};
+	for (int swap = 0; swap < 2; swap++) {
+		struct colour_verdict verdict[2];
+		colour_assign(&classifier, feature, 2, verdict);
+		ck_assert_int_eq(verdict[swap].colour, COLOUR_RED);
+		ck_assert_int_eq(verdict[1 - swap].colour, COLOUR_PINK);
+		/* It is more like what it must not be. */
+		ck_assert_double_lt(verdict[swap].confidence, 0.5);
+		ck_assert_double_gt(verdict[1 - swap].confidence, 0.9);
+		struct colour_feature first = feature[0];
+		feature[0] = feature[1];
+		feature[1] = first;
+	}
+}
+END_TEST
+
 START_TEST(test_order_does_not_matter)
 {
 	struct random r = random_begin("colours_order");
@@ -222,6 +249,7 @@ Suite *test_suite(void)
 	TCase *tc = tcase_create("colour");
 	tcase_add_test(tc, test_learned_colours_are_told_apart_in_other_light);
 	tcase_add_test(tc, test_at_most_one_of_each_and_none_forced);
+	tcase_add_test(tc, test_who_has_less_to_lose_gives_way);
 	tcase_add_test(tc, test_order_does_not_matter);
 	tcase_add_test(tc, test_what_is_like_no_ball_is_unknown);
 	tcase_add_test(tc, test_bad_models_are_named);

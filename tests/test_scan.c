@@ -128,6 +128,29 @@ START_TEST(test_only_what_changed)
 }
 END_TEST
 
+/* A whole cell brighter by half a level is noise, by one level it is a change: of that cell and those around it. */
+START_TEST(test_least_change)
+{
+	struct random r = {1};
+	int mid = (scan.cells_y / 2) * scan.cells_x + scan.cells_x / 2;
+	scene_paint(&camera, &table, NULL, 0, 0, &r, &image);
+	ck_assert(scan_frame(&scan, &image.image));
+	for (int rows = 8; rows <= 16; rows += 8) {
+		scene_paint(&camera, &table, NULL, 0, 0, &r, &image);
+		for (int y = 0; y < rows * scan.factor; y++) {
+			vec2 px = scan_to_full(&scan, scan.cells_x / 2 * SCAN_CELL, scan.cells_y / 2 * SCAN_CELL);
+			int top = (int)(px.y - (scan.factor - 1) / 2.0), left = (int)(px.x - (scan.factor - 1) / 2.0);
+			uint8_t *p = image.image.data + (top + y) * image.image.stride + 3 * left;
+			for (int x = 0; x < 3 * SCAN_CELL * scan.factor; x++)
+				p[x]++;
+		}
+		ck_assert_int_eq(scan_changes(&scan, &image.image), rows == 16 ? 9 : 0);
+		ck_assert_int_eq(scan.changed[mid], rows == 16);
+		ck_assert_int_eq(scan.difference[mid], rows);
+	}
+}
+END_TEST
+
 START_TEST(test_no_cloth_no_scan)
 {
 	static const int grey[] = {0, 10, 255};
@@ -209,6 +232,7 @@ Suite *test_suite(void)
 	tcase_add_test(tc, test_light_and_shade_are_cloth_balls_are_not);
 	tcase_add_test(tc, test_seeds_lie_on_balls);
 	tcase_add_test(tc, test_only_what_changed);
+	tcase_add_test(tc, test_least_change);
 	tcase_add_test(tc, test_no_cloth_no_scan);
 	tcase_add_test(tc, test_places_that_are_none);
 	tcase_add_test(tc, test_every_row_is_learned_again);
