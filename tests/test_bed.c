@@ -174,6 +174,8 @@ START_TEST(rest_or_refused)
 		ck_assert(!k || strstr(err, "steep"));
 		t.bed = (struct bed){.bowl = {f * limit / (0.55 * t.length), 0, 0}};
 		ck_assert_int_eq(table_finish(&t, err, sizeof err), k ? -EINVAL : 0);
+		t.bed = (struct bed){.bowl = {0, 0, -f * limit / (0.55 * t.width)}};
+		ck_assert_int_eq(table_finish(&t, err, sizeof err), k ? -EINVAL : 0);
 	}
 	t.bed = (struct bed){.slope = {NAN, 0}};
 	ck_assert_int_eq(table_finish(&t, NULL, 0), -EINVAL);

@@ -352,6 +352,25 @@ START_TEST(a_rack_stays_mirrored)
 }
 END_TEST
 
+/* Balls that a camera saw overlap by a tenth of a millimetre are not under load: a slow hit across their line leaves the
+ * second where it is, but for friction. */
+START_TEST(overlaps_are_not_under_load)
+{
+	struct model model = real_model();
+	struct scene s = {.table = table_with_time(), .count = 3, .speed = 0.02, .window = 1e-9};
+	double d = 2 * s.table.ball_radius;
+	vec2 vel[3];
+	s.ball[0] = ball_at(COLOUR_WHITE, (vec2){-d, 0});
+	s.ball[0].vel.x = s.speed;
+	s.ball[1] = ball_at(COLOUR_RED, (vec2){0, 0});
+	s.ball[2] = ball_at(COLOUR_RED, (vec2){-1e-6, d - 9e-5});
+	simulate(&s, &model, vel);
+	ck_assert_double_gt(vel[1].x, 0.9 * s.speed);
+	ck_assert_double_lt(fabs(vel[1].y), 0.2 * s.speed);
+	ck_assert_double_lt(vec2_norm(vel[2]), 0.2 * s.speed);
+}
+END_TEST
+
 /* Of contacts that belong together the first is reported first, whatever the balls' numbers: who was hit first decides a
  * foul. */
 START_TEST(the_first_hit_is_reported_first)
@@ -391,6 +410,7 @@ Suite *test_suite(void)
 	tcase_add_loop_test(tcase, one_into_two_off_centre, 0, 3);
 	tcase_add_test(tcase, clusters_keep_momentum);
 	tcase_add_test(tcase, a_rack_stays_mirrored);
+	tcase_add_test(tcase, overlaps_are_not_under_load);
 	tcase_add_test(tcase, the_first_hit_is_reported_first);
 	suite_add_tcase(suite, tcase);
 	return suite;
