@@ -279,8 +279,9 @@ bool cluster_collide(struct sim *sim, struct group *group)
 	double lasts = contact_time(stiffness, speed), e = contact_restitution(table, &sim->model, speed);
 	struct ball now[BALL_MAX];
 	uint32_t balls = within_reach(sim, group, speed, lasts, now);
-	if (__builtin_popcount(balls) < 3)
-		return false;
+	uint32_t others = balls & (balls - 1); /* without the lowest */
+	if ((others & (others - 1)) == 0)
+		return false; /* two alone keep the law of a single contact */
 	struct cluster c = {.stiffness = stiffness,
 			    .damping = damping_of(stiffness, e),
 			    .share = 2 * e / (1 + e),
