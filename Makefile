@@ -46,7 +46,7 @@ TESTS := signature message_check animation fsm stability plan_message controller
 	rules cost geometry frontier pool scheme candidate plan plan_thesis plan_hard plan_complete tolerance refine solutions request \
 	ball bed cluster known contact predict event inverse model motion queue roots sim sim_hard table trace \
 	calibration camera pose scan fit colour stabilise image_io capture stages track vision vision_photos
-TESTS += rules_official match
+TESTS += rules_official match value
 TESTS += seeing detector
 TESTS += shipped
 TEST_SHARED := harness brute_force bus_fixture service_fixture planner_client random poly_judge scenes search_scenes inverse_forward controller_rig shot_compare thesis_lists vision_rig vision_scene
