@@ -202,6 +202,23 @@ START_TEST(a_proposal_is_shown_when_it_has_settled)
 }
 END_TEST
 
+/* What an answer adds to a proposal (a better estimate, the shots after it) does not make it wait. */
+START_TEST(answers_that_keep_the_proposal_do_not_put_it_off)
+{
+	ctl_frames(MANY);
+	int frames = (int)(1e6 * ctl.config.infinity.show_time / FRAME_US) + 2;
+	for (int i = 0; i < frames; i++) {
+		billiard_plan_t *plan = ctl_answer(PLAN_MESSAGE_OK, 0.5);
+		plan->is_final = 0;
+		plan->sequence = i;
+		ck_assert(ctl_take(plan));
+		ctl_frames(1);
+	}
+	ck_assert_int_eq(ctl.c.fsm.state, FSM_SHOWING);
+	ck_assert_int_eq(ctl.c.proposals, 1);
+}
+END_TEST
+
 START_TEST(no_plan_is_said_on_the_table)
 {
 	ctl_frames(MANY);
@@ -379,6 +396,7 @@ Suite *test_suite(void)
 	tcase_add_test(way, improved_answers_replace_repeated_ones_do_not);
 	tcase_add_test(way, a_proposal_changes_only_for_a_better_one);
 	tcase_add_test(way, a_proposal_is_shown_when_it_has_settled);
+	tcase_add_test(way, answers_that_keep_the_proposal_do_not_put_it_off);
 	tcase_add_test(way, no_plan_is_said_on_the_table);
 	suite_add_tcase(suite, way);
 	TCase *commands = tcase_create("commands");
