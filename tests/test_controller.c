@@ -141,7 +141,8 @@ START_TEST(improved_answers_replace_repeated_ones_do_not)
 	ck_assert(ctl_take(plan));
 	ck_assert_double_eq(ctl.c.plan.entries[0].shots[0].angle, 0.9);
 	plan = ctl_answer(PLAN_MESSAGE_OK, 0.2);
-	plan->sequence = 2; /* late */
+	plan->sequence = 2; /* late, however good it was */
+	plan->entries[0].cost = -9;
 	ck_assert(ctl_take(plan));
 	ck_assert_double_eq(ctl.c.plan.entries[0].shots[0].angle, 0.9);
 	ck_assert_int_eq(ctl.c.proposals, 1);

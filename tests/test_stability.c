@@ -405,6 +405,16 @@ START_TEST(layouts_differ_by_place_colour_and_number)
 }
 END_TEST
 
+/* A ball counts once: two reds that lie near one are not both that one. */
+START_TEST(each_ball_has_one_of_its_own)
+{
+	struct layout a = few_balls(), b = a;
+	a.ball[2].pos = vec2_add(a.ball[1].pos, (vec2){0.06, 0});
+	ck_assert(layout_differs(&a, &b, 0.1));
+	ck_assert(layout_differs(&b, &a, 0.1));
+}
+END_TEST
+
 /* ---- settling ---------------------------------------------------------------------------------------------------- */
 
 static bool jaws = true; /* of the model */
@@ -598,6 +608,7 @@ Suite *test_suite(void)
 	suite_add_tcase(suite, frames);
 	TCase *layouts = tcase_create("layouts");
 	tcase_add_test(layouts, layouts_differ_by_place_colour_and_number);
+	tcase_add_test(layouts, each_ball_has_one_of_its_own);
 	tcase_add_test(layouts, what_does_not_overlap_stays);
 	tcase_add_test(layouts, a_rack_seen_by_a_camera_settles);
 	tcase_add_test(layouts, balls_in_corners_and_along_cushions_settle);
