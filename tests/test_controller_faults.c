@@ -76,6 +76,21 @@ START_TEST(no_plan_after_a_plan_changes_nothing)
 }
 END_TEST
 
+/* Nor while the plan waits to be shown. */
+START_TEST(no_plan_after_an_interim_plan_leaves_it)
+{
+	ctl_frames(MANY);
+	billiard_plan_t *plan = ctl_answer(PLAN_MESSAGE_OK, 0.5);
+	plan->is_final = 0;
+	ck_assert(ctl_take(plan));
+	ctl_take(ctl_answer(PLAN_MESSAGE_NONE, 0));
+	ck_assert_int_eq(ctl.c.fsm.state, FSM_PLANNING);
+	ctl_frames(10);
+	ck_assert_int_eq(ctl.c.fsm.state, FSM_SHOWING);
+	ck_assert(ctl.c.has_plan && !ctl.c.has_none);
+}
+END_TEST
+
 /* Only a final "none" is one: better answers may still come. */
 START_TEST(an_interim_no_plan_waits_for_the_final_one)
 {
@@ -467,6 +482,7 @@ Suite *test_suite(void)
 	tcase_add_test(faults, a_request_that_somebody_else_cancelled_gets_a_new_id);
 	tcase_add_test(faults, a_shot_without_an_end_is_given_up);
 	tcase_add_test(faults, no_plan_after_a_plan_changes_nothing);
+	tcase_add_test(faults, no_plan_after_an_interim_plan_leaves_it);
 	tcase_add_test(faults, an_interim_no_plan_waits_for_the_final_one);
 	tcase_add_test(faults, late_and_foreign_answers_are_ignored);
 	tcase_add_test(faults, doubled_and_late_frames_are_ignored);

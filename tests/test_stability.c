@@ -405,6 +405,24 @@ START_TEST(layouts_differ_by_place_colour_and_number)
 }
 END_TEST
 
+/* Without identities a ball is the nearest of its colour, and none when that is far. */
+START_TEST(untracked_balls_are_found_by_place_and_colour)
+{
+	struct layout layout = few_balls();
+	memset(layout.track, 0, sizeof layout.track);
+	for (int i = 0; i < layout.count; i++) {
+		struct ball ball = layout.ball[i];
+		ball.pos.x += 0.02;
+		ck_assert_int_eq(layout_find(&layout, &ball, 0), i);
+		ball.pos.x += 0.02;
+		ck_assert_int_eq(layout_find(&layout, &ball, 0), -1);
+		ball.pos = layout.ball[i].pos;
+		ball.colour = COLOUR_PINK;
+		ck_assert_int_eq(layout_find(&layout, &ball, 0), -1);
+	}
+}
+END_TEST
+
 /* A ball counts once: two reds that lie near one are not both that one. */
 START_TEST(each_ball_has_one_of_its_own)
 {
@@ -608,6 +626,7 @@ Suite *test_suite(void)
 	suite_add_tcase(suite, frames);
 	TCase *layouts = tcase_create("layouts");
 	tcase_add_test(layouts, layouts_differ_by_place_colour_and_number);
+	tcase_add_test(layouts, untracked_balls_are_found_by_place_and_colour);
 	tcase_add_test(layouts, each_ball_has_one_of_its_own);
 	tcase_add_test(layouts, what_does_not_overlap_stays);
 	tcase_add_test(layouts, a_rack_seen_by_a_camera_settles);
