@@ -225,6 +225,22 @@ START_TEST(a_false_white_is_left_out)
 }
 END_TEST
 
+/* The cue ball is the same one wherever it stands in the list. */
+START_TEST(a_false_white_before_the_cue_ball_is_left_out)
+{
+	ctl_frames(3);
+	for (int i = 4; i > 0; i--)
+		ctl.state.balls[i] = ctl.state.balls[i - 1];
+	ctl_place(0, COLOUR_WHITE, 0.7, 0.3);
+	ctl.state.balls[0].track = 9;
+	ctl.state.ball_count = 5;
+	ctl_frames(MANY);
+	ck_assert_int_eq(ctl.c.request.ball_count, 4);
+	ck_assert_int_eq(ctl.c.asked.ball[ctl.c.asked.cue].colour, COLOUR_WHITE);
+	ck_assert_double_eq(ctl.c.asked.ball[ctl.c.asked.cue].pos.x, -0.3);
+}
+END_TEST
+
 /* It can only be played as one. */
 START_TEST(a_ball_of_unknown_colour_is_asked_for_as_a_red)
 {
@@ -492,6 +508,7 @@ Suite *test_suite(void)
 	tcase_add_test(faults, a_hand_that_passes_changes_nothing);
 	tcase_add_test(faults, a_ball_taken_away_asks_anew);
 	tcase_add_test(faults, a_false_white_is_left_out);
+	tcase_add_test(faults, a_false_white_before_the_cue_ball_is_left_out);
 	tcase_add_test(faults, a_ball_of_unknown_colour_is_asked_for_as_a_red);
 	tcase_add_test(faults, a_red_that_fell_makes_a_colour_the_ball_on);
 	tcase_add_test(faults, overlaps_of_a_camera_are_settled_in_the_request);
