@@ -82,7 +82,8 @@ static void subscribe(enum bus_delivery delivery)
 /* ---- types ------------------------------------------------------------------------------------------------------- */
 
 static const struct bus_type *const types[] = {&bus_table_state, &bus_plan_request, &bus_plan,	 &bus_draw_list,
-					       &bus_animation,	 &bus_command,	    &bus_status, &bus_vision_doubt, &bus_stability, &bus_lease, &bus_game};
+					       &bus_animation,	 &bus_command,	    &bus_status, &bus_vision_doubt,
+					       &bus_stability,	 &bus_lease,	    &bus_game};
 enum { TYPE_COUNT = sizeof types / sizeof types[0] };
 
 /* The hash that begins every message of a type. */

@@ -10,9 +10,9 @@
 #include "app/config/text_file.h"
 #include "harness.h"
 
-#define THESIS	"config/thesis-table.conf"
+#define THESIS	   "config/thesis-table.conf"
 #define THESIS_WAY "config/thesis.conf"
-#define SNOOKER "config/snooker-12ft.conf"
+#define SNOOKER	   "config/snooker-12ft.conf"
 
 enum { TEXT_MAX = 1 << 16, ERR_SIZE = 640 };
 static struct config config; /* too large for the stack */

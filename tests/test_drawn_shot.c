@@ -22,7 +22,8 @@ static void answer(int64_t id, int sequence, double angle)
 	plan = (billiard_plan_t){.request_id = id, .sequence = sequence, .entry_count = 2};
 	for (int e = 0; e < 2; e++) {
 		plan.entries[e].shot_count = 1;
-		plan.entries[e].shots[0] = (billiard_plan_shot_t){.angle = angle + e, .speed = 2, .side = 0.1 * sequence};
+		plan.entries[e].shots[0] =
+			(billiard_plan_shot_t){.angle = angle + e, .speed = 2, .side = 0.1 * sequence};
 	}
 	drawn_shot_plan(&drawn, &plan);
 }

@@ -266,8 +266,8 @@ START_TEST(corrections_and_undo)
 		  k.game.state.in_hand);
 	ck_assert(keeper_correct(&k, "foul 7", err, sizeof err) && k.game.score[0] == 37 && k.game.turn == 0);
 	ck_assert(keeper_correct(&k, "again", err, sizeof err) && k.game.turn == 1);
-	static const char *const wrong[] = {"", "score", "score 1", "score -1 0", "turn 3", "on blue", "foul 3", "foul 8",
-					    "hand", "hand up", "score 1 2 3", "x", "undo it"};
+	static const char *const wrong[] = {"",	      "score", "score 1", "score -1 0",	 "turn 3", "on blue", "foul 3",
+					    "foul 8", "hand",  "hand up", "score 1 2 3", "x",	   "undo it"};
 	for (size_t i = 0; i < sizeof wrong / sizeof wrong[0]; i++) {
 		struct game before = k.game;
 		ck_assert_msg(!keeper_correct(&k, wrong[i], err, sizeof err), "%s", wrong[i]);
@@ -286,11 +286,13 @@ START_TEST(a_game_survives_as_text)
 	char err[200];
 	struct layout there = middle(2);
 	rest(&there);
-	ck_assert(keeper_correct(&k, "score 30 21", err, sizeof err) && keeper_correct(&k, "on colour", err, sizeof err));
+	ck_assert(keeper_correct(&k, "score 30 21", err, sizeof err) &&
+		  keeper_correct(&k, "on colour", err, sizeof err));
 	ck_assert(game_write(&k.game, text, sizeof text));
 	struct game back;
 	ck_assert(game_read(&back, text));
-	ck_assert(back.score[0] == 30 && back.score[1] == 21 && back.state.on == ON_COLOUR && back.rest.count == there.count);
+	ck_assert(back.score[0] == 30 && back.score[1] == 21 && back.state.on == ON_COLOUR &&
+		  back.rest.count == there.count);
 	/* A new keeper takes it up where the balls lie as they lay. */
 	struct keeper old = k;
 	k = (struct keeper){0};
@@ -326,7 +328,8 @@ static void see_shot(const struct layout *from, double t, struct random *random)
 	struct layout seen;
 	for (int i = 0; i < from->count; i++) {
 		ball[i] = trace_at(&trace, i, t);
-		ball[i].pos = vec2_add(ball[i].pos, (vec2){random_in(random, -2e-4, 2e-4), random_in(random, -2e-4, 2e-4)});
+		ball[i].pos =
+			vec2_add(ball[i].pos, (vec2){random_in(random, -2e-4, 2e-4), random_in(random, -2e-4, 2e-4)});
 	}
 	seen = position(ball, from->count, from->track);
 	frame(&seen);
@@ -397,8 +400,8 @@ START_TEST(what_was_seen_of_shots_gives_what_the_rules_say)
 	int wrong[3] = {0}, shots = 0;
 	for (int i = 0; i < 40; i++)
 		shots += play_by_chance(random_u64(&random), 25, wrong);
-	printf("game: %d shots, ball on wrong %d, ball in hand wrong %d, score or turn wrong %d\n", shots, wrong[0], wrong[1],
-	       wrong[2]);
+	printf("game: %d shots, ball on wrong %d, ball in hand wrong %d, score or turn wrong %d\n", shots, wrong[0],
+	       wrong[1], wrong[2]);
 	fflush(stdout);
 	ck_assert_int_gt(shots, 500);
 	ck_assert_int_le(wrong[0] * 500, shots);

@@ -302,12 +302,11 @@ START_TEST(the_projector_blanks_what_nobody_vouches_for)
 	pid_t projector = service_start("billiard-projector");
 	pid_t infinity = service_start("billiard-infinity");
 	ck_assert(fixture_wait(bus, infinity_drew, 3));
-	double begin = clock_seconds();
 	/* Alive: never. */
 	awaited = projector;
 	ck_assert(!fixture_wait(bus, lapsed, 2));
 	kill(infinity, SIGKILL);
-	begin = clock_seconds();
+	double begin = clock_seconds();
 	ck_assert_int_eq(fixture_end(infinity, 2), 128 + SIGKILL);
 	ck_assert(fixture_wait(bus, lapsed, 4));
 	ck_assert_double_lt(clock_seconds() - begin, 3); /* STATUS comes once a second */

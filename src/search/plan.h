@@ -115,7 +115,7 @@ struct plan_shot {
 	double leave_radius;	 /* m, half of the samples end within it; NAN: leave is unknown */
 	enum plan_why why;
 	int16_t why_ball; /* WHY_POSITION: the next ball; else -1 */
-	uint64_t hash;		 /* sim_hash at rest */
+	uint64_t hash;	  /* sim_hash at rest */
 };
 
 struct plan {

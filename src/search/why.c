@@ -59,8 +59,7 @@ static void why_safety(struct plan_shot *shot, const struct rules_outcome *outco
 		shot->why = WHY_ESCAPE;
 	else if (rules_is_snookered(from->table, &theirs, outcome->ball, from->count))
 		shot->why = WHY_SNOOKER;
-	else if (!theirs.in_hand &&
-		 best_chance(pot, estimate_pots(estimator, &end, LEAST_CHANCE, pot)) < NO_POT_CHANCE)
+	else if (!theirs.in_hand && best_chance(pot, estimate_pots(estimator, &end, LEAST_CHANCE, pot)) < NO_POT_CHANCE)
 		shot->why = WHY_NO_POT;
 }
 
@@ -84,9 +83,9 @@ void why_find(struct plan_shot *shot, const struct record *record, const struct 
 static const char *lower_name(enum ball_colour colour)
 {
 	static const char *const names[] = {
-		[COLOUR_WHITE] = "cue ball", [COLOUR_RED] = "a red",	 [COLOUR_YELLOW] = "the yellow",
+		[COLOUR_WHITE] = "cue ball",  [COLOUR_RED] = "a red",	    [COLOUR_YELLOW] = "the yellow",
 		[COLOUR_GREEN] = "the green", [COLOUR_BROWN] = "the brown", [COLOUR_BLUE] = "the blue",
-		[COLOUR_PINK] = "the pink",  [COLOUR_BLACK] = "the black", [COLOUR_UNKNOWN] = "the next ball"};
+		[COLOUR_PINK] = "the pink",   [COLOUR_BLACK] = "the black", [COLOUR_UNKNOWN] = "the next ball"};
 	return names[colour];
 }
 

@@ -11,9 +11,13 @@
 
 /* What can be said to the services, and what goes with it. */
 enum argument { ARGUMENT_NONE, ARGUMENT_SECONDS, ARGUMENT_ID, ARGUMENT_FILE, ARGUMENT_FAULT, ARGUMENT_GAME };
-static const char *const wanted[] = {"no argument", "seconds", "the id of a request", "a file",
-				     "a fault and its seconds in one word",
-				     "a correction in one word (quotes): \"undo\", \"score 12 0\", \"turn 2\", \"on red\", ..."};
+static const char *const wanted[] = {
+	"no argument",
+	"seconds",
+	"the id of a request",
+	"a file",
+	"a fault and its seconds in one word",
+	"a correction in one word (quotes): \"undo\", \"score 12 0\", \"turn 2\", \"on red\", ..."};
 
 /* A table is read by its columns. */
 /* clang-format off */

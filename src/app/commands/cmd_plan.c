@@ -18,7 +18,8 @@ struct plan_line {
 	int depth, rails, balls, speeds, plans, tolerances, workers; /* -1: as configured */
 	double budget_ms;					     /* negative: as configured */
 	double budget_nodes;
-	double error_angle, error_speed, error_tip, error_elevation; /* degrees, shares, degrees; negative: the profile's */
+	double error_angle, error_speed, error_tip,
+		error_elevation; /* degrees, shares, degrees; negative: the profile's */
 	bool in_hand, free_ball, json;
 };
 

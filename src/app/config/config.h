@@ -24,25 +24,26 @@ struct config_planner {
 
 /* Controller. */
 struct config_infinity {
-	double still_distance;	/* m a ball may move and still rest */
-	double still_time;	/* s in which nothing moved */
-	double cue_distance;	/* m, of two white balls the cue ball is the one within this of where it was */
-	double cue_time;	/* s the cue ball was tracked */
-	double lost_time;	/* s no ball was lost */
-	double new_time;	/* s no ball was new */
-	double clear_time;	/* s nothing was hidden or in doubt */
-	double moving_time;	/* s a ball is away from its place until it counts as moving */
-	double blind_time;	/* s without calibration or cue ball until the table counts as lost */
-	double nudge_distance;	/* m a ball must lie elsewhere for a new proposal */
-	double tell_time;	/* s until the table says why it does not count as at rest */
-	double silence_time;	/* s without a frame, or an answer of the planner, until the table says so */
-	double show_time;	/* s a proposal that is not final must be the same to be shown */
-	double better_margin;	/* share of its cost by which another must be better to replace it */
-	char game_file[CONFIG_PATH_MAX]; /* the game is kept there over a restart; empty: $STATE_DIRECTORY/game, or nowhere */
-	bool rules;		/* by the rules of snooker; false: any ball (thesis' infinity mode) */
-	double plan_timeout;	/* s without an answer until the request is repeated */
-	double animation_rate;	/* 1 real time */
-	double animation_pause; /* s */
+	double still_distance; /* m a ball may move and still rest */
+	double still_time;     /* s in which nothing moved */
+	double cue_distance;   /* m, of two white balls the cue ball is the one within this of where it was */
+	double cue_time;       /* s the cue ball was tracked */
+	double lost_time;      /* s no ball was lost */
+	double new_time;       /* s no ball was new */
+	double clear_time;     /* s nothing was hidden or in doubt */
+	double moving_time;    /* s a ball is away from its place until it counts as moving */
+	double blind_time;     /* s without calibration or cue ball until the table counts as lost */
+	double nudge_distance; /* m a ball must lie elsewhere for a new proposal */
+	double tell_time;      /* s until the table says why it does not count as at rest */
+	double silence_time;   /* s without a frame, or an answer of the planner, until the table says so */
+	double show_time;      /* s a proposal that is not final must be the same to be shown */
+	double better_margin;  /* share of its cost by which another must be better to replace it */
+	char game_file
+		[CONFIG_PATH_MAX]; /* the game is kept there over a restart; empty: $STATE_DIRECTORY/game, or nowhere */
+	bool rules;		   /* by the rules of snooker; false: any ball (thesis' infinity mode) */
+	double plan_timeout;	   /* s without an answer until the request is repeated */
+	double animation_rate;	   /* 1 real time */
+	double animation_pause;	   /* s */
 };
 
 /* Projector: where table points land on its picture. */

@@ -40,7 +40,7 @@ struct controller {
 	/* what is asked */
 	struct layout asked; /* what the present request was made for */
 	bool has_asked;
-	double asked_at; /* s, monotonic */
+	double asked_at;      /* s, monotonic */
 	struct keeper keeper; /* the game, by the rules */
 	billiard_plan_request_t request;
 	/* what came: the newest answer waits until it has settled */

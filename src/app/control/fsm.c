@@ -89,9 +89,9 @@ const char *fsm_state_name(enum fsm_state state)
 
 const char *fsm_event_name(enum fsm_event event)
 {
-	static const char *const name[FSM_EVENT_COUNT] = {"LOST",   "SILENT", "MOVING", "DOUBT",    "WISH", "STABLE", "SAME",
-							  "READY",  "NONE",   "LATE",	"TIMEOUT",  "ANEW",   "PAUSE",
-							  "RESUME", "TOGGLE", "NEXT",	"PREVIOUS", "REDRAW"};
+	static const char *const name[FSM_EVENT_COUNT] = {"LOST",  "SILENT", "MOVING", "DOUBT", "WISH",	    "STABLE",
+							  "SAME",  "READY",  "NONE",   "LATE",	"TIMEOUT",  "ANEW",
+							  "PAUSE", "RESUME", "TOGGLE", "NEXT",	"PREVIOUS", "REDRAW"};
 	return name[event];
 }
 

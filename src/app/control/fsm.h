@@ -22,7 +22,7 @@ enum fsm_event {
 	FSM_SILENT, /* no frames come */
 	FSM_MOVING,
 	FSM_DOUBT,   /* nothing moves, and yet for some time it was not known how the balls lie */
-	FSM_WISH,   /* at rest, but a hand has something to do before anybody plays: a ball on its spot, a new frame */
+	FSM_WISH,    /* at rest, but a hand has something to do before anybody plays: a ball on its spot, a new frame */
 	FSM_STABLE,  /* at rest, in a layout that no proposal was made for */
 	FSM_SAME,    /* at rest, in the layout of the present request or proposal */
 	FSM_READY,   /* a plan for the present request is to be shown */

@@ -5,7 +5,7 @@
 #include <string.h>
 
 static const double SAME_PLACE = 0.005; /* m; nearer, and nobody moved the ball */
-static const double TOUCHED = 0.03;	/* m; a cue ball that goes no farther and meets nothing was touched, not played */
+static const double TOUCHED = 0.03; /* m; a cue ball that goes no farther and meets nothing was touched, not played */
 
 static int count_colour(const struct layout *layout, enum ball_colour colour)
 {
@@ -204,7 +204,8 @@ static bool object_moved(const struct layout *before, const struct layout *after
 
 static bool is_in_d(const struct table *table, vec2 pos)
 {
-	return pos.x < table->baulk_d_centre.x + TOUCHED && vec2_dist(pos, table->baulk_d_centre) < table->baulk_d_radius + TOUCHED;
+	return pos.x < table->baulk_d_centre.x + TOUCHED &&
+	       vec2_dist(pos, table->baulk_d_centre) < table->baulk_d_radius + TOUCHED;
 }
 
 /* The cue ball was played, not put somewhere by a hand: a ball in hand may be put anywhere in the D. */
@@ -216,7 +217,8 @@ static bool was_played(const struct game *game, const struct table *table, const
 	bool went = vec2_dist(game->rest.ball[game->rest.cue].pos, rest->ball[rest->cue].pos) > TOUCHED;
 	bool placed = game->state.in_hand && is_in_d(table, rest->ball[rest->cue].pos) &&
 		      watch->farthest < 2 * table->baulk_d_radius + TOUCHED;
-	return object_moved(&game->rest, rest) || watch->first >= 0 || watch->single[COLOUR_WHITE].fell || (went && !placed);
+	return object_moved(&game->rest, rest) || watch->first >= 0 || watch->single[COLOUR_WHITE].fell ||
+	       (went && !placed);
 }
 
 static void grant_wishes(struct game *game, const struct layout *rest)
@@ -275,7 +277,8 @@ bool game_correct(struct game *game, const char *words, char *err, size_t err_si
 {
 	char what[16];
 	int a, b, end = 0;
-	if (sscanf(words, "score %d %d%n", &a, &b, &end) == 2 && !words[end] && a >= 0 && b >= 0 && a < 1000 && b < 1000) {
+	if (sscanf(words, "score %d %d%n", &a, &b, &end) == 2 && !words[end] && a >= 0 && b >= 0 && a < 1000 &&
+	    b < 1000) {
 		game->score[0] = a;
 		game->score[1] = b;
 	} else if (sscanf(words, "turn %d%n", &a, &end) == 1 && !words[end] && (a == 1 || a == 2)) {
@@ -351,8 +354,8 @@ static bool read_ball(const char **text, struct layout *rest, int i)
 
 static bool numbers_fit(const struct game *g, int on)
 {
-	return g->frame >= 0 && g->shots >= 0 && (g->turn == 0 || g->turn == 1) && g->score[0] >= 0 && g->score[1] >= 0 &&
-	       g->break_points >= 0 && on >= ON_RED && on <= ON_CLEARANCE && g->rest.count >= 0 &&
+	return g->frame >= 0 && g->shots >= 0 && (g->turn == 0 || g->turn == 1) && g->score[0] >= 0 &&
+	       g->score[1] >= 0 && g->break_points >= 0 && on >= ON_RED && on <= ON_CLEARANCE && g->rest.count >= 0 &&
 	       g->rest.count <= BALL_MAX;
 }
 
@@ -360,8 +363,8 @@ bool game_read(struct game *game, const char *text)
 {
 	struct game g = {.begun = true, .rest = {.cue = -1}};
 	int on, hand, free_ball, over, used = 0;
-	if (sscanf(text, "game 1 %d %d %d %d %d %d %d %d %d %d %d\n%n", &g.frame, &g.shots, &g.turn, &g.score[0], &g.score[1],
-		   &g.break_points, &on, &hand, &free_ball, &over, &g.rest.count, &used) != 11 ||
+	if (sscanf(text, "game 1 %d %d %d %d %d %d %d %d %d %d %d\n%n", &g.frame, &g.shots, &g.turn, &g.score[0],
+		   &g.score[1], &g.break_points, &on, &hand, &free_ball, &over, &g.rest.count, &used) != 11 ||
 	    used == 0 || !numbers_fit(&g, on))
 		return false;
 	g.state = (struct rules_state){.on = (enum rules_on)on, .in_hand = hand != 0, .free_ball = free_ball != 0};

@@ -2,13 +2,13 @@
 
 #include <math.h>
 
-static const double PLAYED = 0.005;	/* m the cue ball must have moved */
-static const double MET = 0.003;	/* m an object ball must have moved */
-static const double JUMP = 0.1;		/* m between two places that are no way of a ball that was away */
-static const double LONG_AWAY = 1;	/* s */
-static const double STILL = 0.1;	/* m/s */
-static const double STRUCK = 0.2;	/* m that a cue ball at rest goes between two frames when it is struck */
-static const double REACH_TIME = 0.2;	/* s before a ball that moves to a pocket reaches it unseen */
+static const double PLAYED = 0.005;   /* m the cue ball must have moved */
+static const double MET = 0.003;      /* m an object ball must have moved */
+static const double JUMP = 0.1;	      /* m between two places that are no way of a ball that was away */
+static const double LONG_AWAY = 1;    /* s */
+static const double STILL = 0.1;      /* m/s */
+static const double STRUCK = 0.2;     /* m that a cue ball at rest goes between two frames when it is struck */
+static const double REACH_TIME = 0.2; /* s before a ball that moves to a pocket reaches it unseen */
 
 static int find_colour(const struct layout *layout, enum ball_colour colour)
 {
@@ -24,7 +24,8 @@ void game_watch_begin(struct game_watch *watch, const struct layout *rest, doubl
 	for (int i = 0; i < rest->count; i++) {
 		enum ball_colour colour = rest->ball[i].colour;
 		if (colour != COLOUR_RED)
-			watch->single[colour] = (struct game_single){.pos = rest->ball[i].pos, .time = time, .seen = true};
+			watch->single[colour] =
+				(struct game_single){.pos = rest->ball[i].pos, .time = time, .seen = true};
 	}
 }
 
@@ -35,8 +36,7 @@ static bool near_pocket(const struct table *table, const struct game_single *s, 
 	if (is_cue && s->speed < STILL)
 		reach += STRUCK;
 	for (int i = 0; i < table->pocket_count; i++)
-		if (vec2_dist(s->pos, table->pocket[i].centre) <
-		    table->pocket[i].radius + reach)
+		if (vec2_dist(s->pos, table->pocket[i].centre) < table->pocket[i].radius + reach)
 			return true;
 	return false;
 }
@@ -44,7 +44,8 @@ static bool near_pocket(const struct table *table, const struct game_single *s, 
 static void follow_single(struct game_single *s, const struct table *table, vec2 pos, double time, bool is_cue)
 {
 	double dt = time - s->time;
-	if (s->seen && s->was_away && vec2_dist(pos, s->pos) > JUMP && (near_pocket(table, s, is_cue) || dt > LONG_AWAY))
+	if (s->seen && s->was_away && vec2_dist(pos, s->pos) > JUMP &&
+	    (near_pocket(table, s, is_cue) || dt > LONG_AWAY))
 		s->fell = true;
 	if (s->seen && dt > 0 && !s->was_away)
 		s->speed = vec2_dist(pos, s->pos) / dt;

@@ -7,12 +7,12 @@
 
 /* A ball of which there is one. */
 struct game_single {
-	vec2 pos;	/* m, where it was seen last */
-	double speed;	/* m/s, there */
-	double time;	/* s, then */
-	bool seen;	/* at all */
-	bool was_away;	/* in the last frame */
-	bool fell;	/* it went away at a pocket, or for long, and came back elsewhere */
+	vec2 pos;      /* m, where it was seen last */
+	double speed;  /* m/s, there */
+	double time;   /* s, then */
+	bool seen;     /* at all */
+	bool was_away; /* in the last frame */
+	bool fell;     /* it went away at a pocket, or for long, and came back elsewhere */
 };
 
 struct game_watch {

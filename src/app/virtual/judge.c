@@ -326,7 +326,8 @@ void judge_status(struct judge *j, const billiard_status_t *status)
 {
 	double on, in_hand, moving;
 	if (!j->at_rest || strncmp((const char *)status->process, "billiard-table", sizeof status->process) != 0 ||
-	    !metric(status, "ball on", &on) || !metric(status, "in hand", &in_hand) || !metric(status, "moving", &moving))
+	    !metric(status, "ball on", &on) || !metric(status, "in hand", &in_hand) ||
+	    !metric(status, "moving", &moving))
 		return;
 	if (moving > 0 || !(on >= ON_ANY && on <= ON_CLEARANCE))
 		return;
