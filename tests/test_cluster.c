@@ -293,7 +293,10 @@ START_TEST(clusters_keep_momentum)
 		struct ball ball[7];
 		int count = 2 + n % 6;
 		double d = 2 * t.ball_radius + random_in(&r, 0, 3e-4);
+		/* no loss at all, of a third: the steps in time must not give what nothing takes */
 		t.material.e_ball = n % 3 ? random_in(&r, 0.3, 1) : 1;
+		t.material.mu_ball_a = n % 3 ? 0.009951 : 0;
+		t.material.mu_ball_b = n % 3 ? 0.108 : 0;
 		for (int i = 0; i < count; i++) {
 			vec2 at = i == 0 ? (vec2){0, 0} : vec2_scale(vec2_from_angle((i - 1) * M_PI / 3), d);
 			ball[i] = ball_at(COLOUR_RED, at);

@@ -233,8 +233,8 @@ END_TEST
 START_TEST(a_cushion_of_its_own)
 {
 	struct table table = scene_box_table(3, 1.5);
-	table.cushion[1].e = 0.5; /* the right rail */
-	table.cushion[1].mu = 0.4;
+	table.cushion[1].e = 0.5;  /* the right rail */
+	table.cushion[0].mu = 0.4; /* the left one: each constant for itself */
 	for (int right = 0; right < 2; right++) {
 		for (int k = 0; k < 2; k++) {
 			struct model model = model_named(k ? "real" : "simple");
@@ -244,7 +244,7 @@ START_TEST(a_cushion_of_its_own)
 				    want = ball;
 			struct nose nose = table_nose(&table, (vec2){right ? -1 : 1, 0}, table.cushion[0].nose_height);
 			nose.e = right ? 0.5 : table.material.e_cushion;
-			nose.mu = right ? 0.4 : table.material.mu_cushion;
+			nose.mu = right ? table.material.mu_cushion : 0.4;
 			static struct sim sim;
 			struct event event;
 			sim_init(&sim, &table, &model, &ball, 1);
