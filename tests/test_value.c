@@ -301,6 +301,18 @@ START_TEST(straight_pot_without_in_off)
 }
 END_TEST
 
+/* Nothing but a red: it is potted, not left as a safety. */
+START_TEST(red_alone)
+{
+	struct lay lay = {.on = ON_RED};
+	put(&lay, COLOUR_WHITE, 0.8, 0.1);
+	put(&lay, COLOUR_RED, 1.3, 0.5);
+	struct plan_shot shot = best_of(&lay, 4000);
+	ck_assert(shot.target == 1 && shot.points == 1);
+	ck_assert_double_ge(shot.success, 0.8);
+}
+END_TEST
+
 /* Two reds that touch, in line with the pocket: what is sent at them goes there. */
 START_TEST(plant)
 {
@@ -478,6 +490,7 @@ Suite *test_suite(void)
 	tcase_set_timeout(positions, 60);
 	tcase_add_unchecked_fixture(positions, setup_estimator, NULL);
 	tcase_add_test(positions, straight_pot_without_in_off);
+	tcase_add_test(positions, red_alone);
 	tcase_add_test(positions, plant);
 	tcase_add_test(positions, frozen_to_the_cushion);
 	tcase_add_test(positions, escape_from_a_snooker);

@@ -47,6 +47,16 @@ static int points_of(const struct ball *ball)
 	return ball->colour >= COLOUR_RED && ball->colour <= COLOUR_BLACK ? (int)ball->colour : 0;
 }
 
+/* 1 in a frame; less in positions laid out without all colours, where a red is followed by less. */
+static double share_of_colours(const struct setting *from)
+{
+	int colours = 0;
+	for (int i = 0; i < from->count; i++)
+		colours += from->ball[i].colour >= COLOUR_YELLOW && from->ball[i].colour <= COLOUR_BLACK &&
+			   from->ball[i].phase != BALL_POTTED;
+	return fmin(1, colours / 6.0);
+}
+
 /* Any ball is on: what the balls but one may bring. */
 static double practice_visit(const struct estimator *e, const struct setting *from)
 {
@@ -66,9 +76,10 @@ static double after_pot(const struct estimator *e, const struct setting *from, i
 	int reds = count_reds(from);
 	switch (from->rules->on) {
 	case ON_RED:
-		return e->going_on[ON_COLOUR][reds > 0 ? reds - 1 : 0];
+		return share_of_colours(from) * e->going_on[ON_COLOUR][reds > 0 ? reds - 1 : 0];
 	case ON_COLOUR:
-		return reds > 0 ? e->going_on[ON_RED][reds] : e->going_on[ON_CLEARANCE][COLOUR_YELLOW];
+		return share_of_colours(from) *
+		       (reds > 0 ? e->going_on[ON_RED][reds] : e->going_on[ON_CLEARANCE][COLOUR_YELLOW]);
 	case ON_CLEARANCE:
 		if (from->ball[index].colour >= COLOUR_BLACK)
 			return 0;
@@ -84,8 +95,10 @@ static double average_visit(const struct estimator *e, const struct setting *fro
 	int reds = count_reds(from);
 	if (from->rules->on == ON_ANY)
 		return 0; /* practice: no opponent gains by a miss */
-	if (reds > 0)
-		return e->going_on[ON_RED][reds];
+	if (reds > 0) {
+		double share = share_of_colours(from);
+		return share * e->going_on[ON_RED][reds] + (1 - share) * e->flow;
+	}
 	for (int c = COLOUR_YELLOW; c <= COLOUR_BLACK; c++)
 		for (int i = 0; i < from->count; i++)
 			if (from->ball[i].phase != BALL_POTTED && (int)from->ball[i].colour == c)
