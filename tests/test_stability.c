@@ -382,6 +382,20 @@ START_TEST(an_empty_table_is_lost)
 }
 END_TEST
 
+/* An arm over the white does not make the table a lost one, however long it stays; without the arm it is. */
+START_TEST(a_white_under_an_arm_is_not_lost)
+{
+	struct layout layout = few_balls();
+	show(&layout, STILL_FRAMES);
+	layout.ball[0].colour = COLOUR_RED;
+	for (int i = 0; i < 3 * FRAME_RATE; i++) {
+		struct layout seen = layout;
+		ck_assert_int_ne(look(&seen, true), STABILITY_LOST);
+	}
+	ck_assert_int_eq(show(&layout, FRAME_RATE), STABILITY_LOST);
+}
+END_TEST
+
 START_TEST(layouts_differ_by_place_colour_and_number)
 {
 	struct layout a = few_balls(), b = few_balls();
@@ -623,6 +637,7 @@ Suite *test_suite(void)
 	tcase_add_test(frames, the_order_of_balls_does_not_matter);
 	tcase_add_test(frames, of_two_white_balls_the_one_that_was_it_stays_it);
 	tcase_add_test(frames, an_empty_table_is_lost);
+	tcase_add_test(frames, a_white_under_an_arm_is_not_lost);
 	suite_add_tcase(suite, frames);
 	TCase *layouts = tcase_create("layouts");
 	tcase_add_test(layouts, layouts_differ_by_place_colour_and_number);
