@@ -197,7 +197,8 @@ static void lay(struct game *g, const struct shot_case *c)
 		g->ball[W].pos = vec2_add(g->ball[c->touching].pos, (vec2){-2 * g->table.ball_radius, 0});
 }
 
-static struct rules_outcome play(struct game *g, const struct shot_case *c)
+/* later: s between the two balls that are met. */
+static struct rules_outcome play_with(struct game *g, const struct shot_case *c, double later)
 {
 	struct rules_state state = {.on = c->on, .free_ball = c->free_ball};
 	struct rules_outcome out;
@@ -212,11 +213,16 @@ static struct rules_outcome play(struct game *g, const struct shot_case *c)
 	if (c->first >= 0)
 		event(g, EVENT_BALL_BALL, W, c->first, 0.3);
 	if (c->second >= 0)
-		event(g, EVENT_BALL_BALL, c->second, W, 0.3);
+		event(g, EVENT_BALL_BALL, c->second, W, 0.3 + later);
 	for (int i = 0; i < MANY && c->potted[i] >= 0; i++)
 		event(g, EVENT_POCKET, c->potted[i], 0, 1 + i);
 	rules_judge(&g->table, &state, &g->trace, c->named, &out);
 	return out;
+}
+
+static struct rules_outcome play(struct game *g, const struct shot_case *c)
+{
+	return play_with(g, c, 0);
 }
 
 /* Reds stay off; colours come back but for the one whose turn it was and that was potted without a foul. */
@@ -238,6 +244,27 @@ static void check_colours(const struct shot_case *c, const struct rules_outcome 
 			      off ? "came back" : "is not back");
 	}
 }
+
+/* Two balls are struck at once or one after the other: then only the first counts. */
+START_TEST(a_ball_met_later_does_not_count)
+{
+	struct game g;
+	int seen = 0;
+	for (size_t i = 0; i < sizeof shot_case / sizeof shot_case[0]; i++) {
+		struct shot_case c = shot_case[i];
+		if (c.second < 0)
+			continue;
+		seen++;
+		struct rules_outcome later = play_with(&g, &c, 1e-3);
+		c.second = NONE;
+		struct rules_outcome alone = play(&g, &c);
+		ck_assert_msg(later.foul == alone.foul && later.points == alone.points &&
+				      later.next.on == alone.next.on,
+			      "%s: %s", c.section, c.name);
+	}
+	ck_assert_int_gt(seen, 0);
+}
+END_TEST
 
 START_TEST(shots_by_the_rules)
 {
@@ -432,6 +459,7 @@ Suite *test_suite(void)
 	Suite *suite = suite_create("rules_official");
 	TCase *tc = tcase_create("rules");
 	tcase_add_loop_test(tc, shots_by_the_rules, 0, sizeof shot_case / sizeof shot_case[0]);
+	tcase_add_test(tc, a_ball_met_later_does_not_count);
 	tcase_add_loop_test(tc, spots, 0, sizeof spot_case / sizeof spot_case[0]);
 	tcase_add_test(tc, black_below_its_spot);
 	tcase_add_test(tc, the_most_valuable_first);
