@@ -208,6 +208,63 @@ START_TEST(a_colour_put_back_before_the_rest)
 }
 END_TEST
 
+/* The black on its spot is struck away at once, falls, and is back on its spot before the table rests. */
+START_TEST(a_black_back_on_its_spot)
+{
+	struct layout there = middle(2);
+	rest(&there);
+	play(&there, COLOUR_RED);
+	take_off(&there, COLOUR_RED);
+	rest(&there);
+	vec2 from = there.ball[there.cue].pos, to = vec2_add(table.spot[COLOUR_BLACK], (vec2){-0.06, 0.01});
+	for (int i = 1; i <= 5; i++) {
+		there.ball[there.cue].pos = vec2_madd(from, 0.2 * i, vec2_sub(to, from));
+		frame(&there);
+	}
+	take_off(&there, COLOUR_BLACK);
+	for (int i = 0; i < 12; i++)
+		frame(&there);
+	put(&there, COLOUR_BLACK, table.spot[COLOUR_BLACK]);
+	rest(&there);
+	ck_assert(k.game.score[0] == 8 && k.game.state.on == ON_RED && k.game.turn == 0);
+}
+END_TEST
+
+/* A cue ball that is struck away from a pocket and not followed for a few frames has not fallen. */
+START_TEST(a_fast_cue_ball_near_a_pocket_has_not_fallen)
+{
+	struct layout there = middle(2), gone;
+	there.ball[there.cue].pos = vec2_madd(table.pocket[1].centre, 0.15, table.pocket[1].normal);
+	rest(&there);
+	gone = there;
+	take_off(&gone, COLOUR_WHITE);
+	frame(&gone);
+	frame(&gone);
+	for (int i = 0; i < 20; i++) {
+		there.ball[there.cue].pos = vec2_add(table.baulk_d_centre, (vec2){-0.2 + 0.02 * i, 0.1});
+		frame(&there);
+	}
+	rest(&there);
+	ck_assert(!k.game.state.in_hand);
+}
+END_TEST
+
+/* It falls as the last ball and a hand that no frame shows has put it into the D: no ball flies like that. */
+START_TEST(a_cue_ball_put_back_between_two_frames)
+{
+	struct layout there = middle(2);
+	rest(&there);
+	play(&there, COLOUR_RED);
+	for (int i = 0; i < 6; i++) {
+		there.ball[there.cue].pos = vec2_madd(table.pocket[3].centre, 0.3 - 0.04 * i, table.pocket[3].normal);
+		frame(&there);
+	}
+	there.ball[there.cue].pos = table.baulk_d_centre;
+	rest(&there);
+	ck_assert(k.game.state.in_hand && k.game.foul == 4);
+}
+END_TEST
+
 START_TEST(hands_are_no_shots)
 {
 	struct layout there = middle(2);
@@ -420,6 +477,9 @@ Suite *test_suite(void)
 	tcase_add_test(scenes, the_wrong_ball_first_is_a_foul_of_its_value);
 	tcase_add_test(scenes, an_in_off_gives_the_ball_in_hand);
 	tcase_add_test(scenes, a_colour_put_back_before_the_rest);
+	tcase_add_test(scenes, a_black_back_on_its_spot);
+	tcase_add_test(scenes, a_fast_cue_ball_near_a_pocket_has_not_fallen);
+	tcase_add_test(scenes, a_cue_ball_put_back_between_two_frames);
 	tcase_add_test(scenes, hands_are_no_shots);
 	tcase_add_test(scenes, the_clearance_ends_the_frame);
 	tcase_add_test(scenes, corrections_and_undo);

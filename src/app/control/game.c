@@ -82,7 +82,7 @@ static void find_fates(const struct layout *before, const struct layout *after, 
 		for (int j = 0; j < after->count && colour != COLOUR_RED; j++)
 			if (after->ball[j].colour == colour)
 				fate->after[i] = j;
-		fate->fell[i] = fate->after[i] < 0 || (colour != COLOUR_RED && watch->single[colour].fell);
+		fate->fell[i] = fate->after[i] < 0 || (colour != COLOUR_RED && game_watch_fell_and_back(watch, colour));
 	}
 }
 
@@ -217,8 +217,7 @@ static bool was_played(const struct game *game, const struct table *table, const
 	bool went = vec2_dist(game->rest.ball[game->rest.cue].pos, rest->ball[rest->cue].pos) > TOUCHED;
 	bool placed = game->state.in_hand && is_in_d(table, rest->ball[rest->cue].pos) &&
 		      watch->farthest < 2 * table->baulk_d_radius + TOUCHED;
-	return object_moved(&game->rest, rest) || watch->first >= 0 || watch->single[COLOUR_WHITE].fell ||
-	       (went && !placed);
+	return object_moved(&game->rest, rest) || watch->first >= 0 || watch->single[COLOUR_WHITE].jumped || (went && !placed);
 }
 
 static void grant_wishes(struct game *game, const struct layout *rest)

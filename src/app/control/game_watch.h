@@ -7,12 +7,16 @@
 
 /* A ball of which there is one. */
 struct game_single {
-	vec2 pos;      /* m, where it was seen last */
-	double speed;  /* m/s, there */
-	double time;   /* s, then */
-	bool seen;     /* at all */
-	bool was_away; /* in the last frame */
-	bool fell;     /* it went away at a pocket, or for long, and came back elsewhere */
+	vec2 pos;	/* m, where it was seen last */
+	double speed;	/* m/s, there */
+	double time;	/* s, then */
+	bool seen;	/* at all */
+	bool was_away;	/* in the last frame */
+	/* It came back where it lies since: from a pocket, or after long, or faster than a ball goes. */
+	bool jumped;
+	/* It came back where it was before, after a while. */
+	bool returned;
+	vec2 back; /* m, where it came back */
 };
 
 struct game_watch {
@@ -29,6 +33,8 @@ void game_watch_begin(struct game_watch *watch, const struct layout *rest, doubl
 /* A frame. occluded: something is over the table; what is not seen then is not away. */
 void game_watch_frame(struct game_watch *watch, const struct table *table, const struct layout *layout, double time,
 		      bool occluded);
+/* The ball of that colour (not red) fell and was put back before the rest. */
+bool game_watch_fell_and_back(const struct game_watch *watch, enum ball_colour colour);
 /* A ball of that colour (not red) is away, and was last seen where it may have fallen. */
 bool game_watch_fell(const struct game_watch *watch, const struct table *table, enum ball_colour colour);
 
