@@ -34,6 +34,7 @@ APP_VIRTUAL := table_scene table_camera table_camera_ball player
 APP_COMMANDS := cmd cmd_calibrate cmd_demo cmd_detect cmd_plan cmd_run cmd_simulate cmd_status match overlay plot cmd_control status_listen status_print
 APP_PROCESS += event_log private_bus
 APP_VIRTUAL += judge_match
+APP_COMMANDS += cmd_fsm
 APP_COMMANDS += cmd_judge cmd_judge_replay cmd_match
 APP_VIRTUAL += judge
 APP_COMMANDS += cmd_judge_run

@@ -170,6 +170,12 @@ refused 'cut.json:' simulate --shot "$folder/cut.json"
 refused 'empty.json:' simulate --shot "$folder/empty.json"
 refused 'wants one position, or one --shot' simulate --shot "$folder/empty.json" "$folder/pot.txt"
 
+# ---- fsm: the controller's table
+works 'SHOWING MOVING SHOT / clear' fsm
+works 'digraph fsm' fsm --dot
+refused 'nonsense' fsm --nonsense
+refused 'fsm' fsm word
+
 # ---- judge: what is no log
 refused 'no log' judge
 refused 'takes no log' judge --live "$folder/text.png"

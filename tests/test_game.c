@@ -265,6 +265,18 @@ START_TEST(a_cue_ball_put_back_between_two_frames)
 }
 END_TEST
 
+/* The red that was met first falls without having been seen to move; then the pink is met. No foul. */
+START_TEST(a_red_that_was_gone_before_it_was_seen_to_move)
+{
+	struct layout there = middle(2);
+	rest(&there);
+	play(&there, COLOUR_PINK);
+	take_off(&there, COLOUR_RED);
+	rest(&there);
+	ck_assert(k.game.foul == 0 && k.game.score[0] == 1 && k.game.state.on == ON_COLOUR);
+}
+END_TEST
+
 START_TEST(hands_are_no_shots)
 {
 	struct layout there = middle(2);
@@ -480,6 +492,7 @@ Suite *test_suite(void)
 	tcase_add_test(scenes, a_black_back_on_its_spot);
 	tcase_add_test(scenes, a_fast_cue_ball_near_a_pocket_has_not_fallen);
 	tcase_add_test(scenes, a_cue_ball_put_back_between_two_frames);
+	tcase_add_test(scenes, a_red_that_was_gone_before_it_was_seen_to_move);
 	tcase_add_test(scenes, hands_are_no_shots);
 	tcase_add_test(scenes, the_clearance_ends_the_frame);
 	tcase_add_test(scenes, corrections_and_undo);

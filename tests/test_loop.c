@@ -10,6 +10,8 @@
 #include "service_fixture.h"
 
 static int64_t threshold;
+static pid_t judge;
+static int judge_status;
 
 /* ---- the loop ---------------------------------------------------------------------------------------------------- */
 
@@ -50,6 +52,38 @@ START_TEST(the_loop_survives_the_death_of_each)
 		fixture_said(pid[i], 2, said, sizeof said);
 		ck_assert_msg(status == 0, "%s: status %d: %s", programs[i], status, said);
 	}
+}
+END_TEST
+
+/* ---- the rules ---------------------------------------------------------------------------------------------------- */
+
+static bool has_ended(void)
+{
+	return (judge_status = fixture_end(judge, 0)) >= 0;
+}
+
+/* Played by the rules on the virtual table: nothing is proposed for what does not lie there, once a rest, and ball on and ball in hand are
+ * those of the truth. The judge compares what was asked with TRUTH. */
+START_TEST(the_game_is_kept_by_the_rules)
+{
+	char command[900], path[160], said[TEXT_SIZE];
+	snprintf(path, sizeof path, "%s", fixture_file("rules.conf"));
+	snprintf(command, sizeof command,
+		 "sed -e 's/rules = false/rules = true/' -e 's/time_scale = 8/time_scale = 2/' -e 's/still_time = 250/still_time = 400/' %s >%s",
+		 conf, path);
+	ck_assert_int_eq(system(command), 0);
+	for (int i = 0; i < PROGRAM_COUNT; i++)
+		fixture_start(programs[i], (const char *[]){"-c", path, NULL});
+	judge = fixture_start("billiard", (const char *[]){"judge", "-c", path, "--live", "--shots", "10", "--seconds", "90",
+							   "--json", NULL});
+	ck_assert(fixture_wait(bus, has_ended, 120));
+	fixture_said(judge, 1, said, sizeof said);
+	printf("loop: %s", said);
+	fflush(stdout);
+	ck_assert_ptr_nonnull(strstr(said, "\"shots\":1"));
+	ck_assert_ptr_nonnull(strstr(said, "\"wrong\":0,"));
+	ck_assert_ptr_nonnull(strstr(said, "\"more_than_one_request\":0,"));
+	ck_assert_ptr_nonnull(strstr(said, "\"ball_on_wrong\":0,\"in_hand_wrong\":0,"));
 }
 END_TEST
 
@@ -206,6 +240,7 @@ Suite *test_suite(void)
 	TCase *loop = tcase_create("loop");
 	tcase_set_timeout(loop, 200);
 	tcase_add_checked_fixture(loop, service_setup, service_teardown);
+	tcase_add_test(loop, the_game_is_kept_by_the_rules);
 	tcase_add_test(loop, the_loop_survives_the_death_of_each);
 	suite_add_tcase(suite, loop);
 	return suite;

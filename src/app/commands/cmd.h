@@ -11,7 +11,7 @@
 enum { CMD_OK = 0, CMD_FAILED = 1, CMD_BAD_INPUT = 2, CMD_ERROR_SIZE = 640 };
 
 extern const struct options detect_options, plan_options, simulate_options, calibrate_options, run_options,
-	status_options, control_options, demo_options, judge_options, match_options;
+	status_options, control_options, demo_options, judge_options, match_options, fsm_options;
 int cmd_detect(int argc, char **argv);
 int cmd_plan(int argc, char **argv);
 int cmd_simulate(int argc, char **argv);
@@ -22,6 +22,7 @@ int cmd_control(int argc, char **argv);
 int cmd_demo(int argc, char **argv);
 int cmd_judge(int argc, char **argv);
 int cmd_match(int argc, char **argv);
+int cmd_fsm(int argc, char **argv);
 
 /* The row of -c, --config into the member of that type. */
 #define CMD_CONFIG_ROW(line)                                                                                           \

@@ -126,6 +126,19 @@ static void write_arrow(FILE *out, enum fsm_state from, enum fsm_state to)
 		fprintf(out, "\"];\n");
 }
 
+void fsm_write_lines(FILE *out)
+{
+	for (enum fsm_state s = 0; s < FSM_STATE_COUNT; s++)
+		for (enum fsm_event e = 0; e < FSM_EVENT_COUNT; e++) {
+			const struct cell *cell = &table[e][s];
+			if (!cell->written)
+				continue;
+			fprintf(out, "%s %s %s", fsm_state_name(s), fsm_event_name(e), fsm_state_name(cell->next));
+			write_actions(out, cell->actions);
+			fprintf(out, "\n");
+		}
+}
+
 void fsm_write_dot(FILE *out)
 {
 	fprintf(out, "digraph fsm {\n\tnode [shape=box, style=rounded];\n\tbegin [shape=point];\n\tbegin -> %s;\n",

@@ -72,6 +72,8 @@ double fsm_timeout(const struct fsm *fsm, const struct fsm_limits *limits, doubl
 bool fsm_written(enum fsm_state state, enum fsm_event event);
 const char *fsm_state_name(enum fsm_state state);
 const char *fsm_event_name(enum fsm_event event);
+/* The table, a line for each cell that does not stay: "STATE EVENT NEXT / actions". */
+void fsm_write_lines(FILE *out);
 /* The table as a drawing for Graphviz's dot. */
 void fsm_write_dot(FILE *out);
 

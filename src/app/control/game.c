@@ -100,11 +100,13 @@ static int first_contact(const struct game *game, const struct game_watch *watch
 {
 	const struct layout *rest = &game->rest;
 	bool own = watch->first >= 0 && watch->first < rest->count;
-	if (own && (watch->first_sure || rules_ball_on(&game->state, rest->ball, rest->count, watch->first)))
+	if (own && rules_ball_on(&game->state, rest->ball, rest->count, watch->first))
 		return watch->first;
-	for (int i = 0; i < rest->count; i++)
-		if (i != rest->cue && fate->fell[i] && rules_ball_on(&game->state, rest->ball, rest->count, i))
+	for (int i = 0; i < rest->count; i++) {
+		bool on = i != rest->cue && fate->fell[i] && rules_ball_on(&game->state, rest->ball, rest->count, i);
+		if (on && (!own || !watch->first_sure || !watch->moved[i]))
 			return i;
+	}
 	return own ? watch->first : -1;
 }
 

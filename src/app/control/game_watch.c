@@ -66,6 +66,15 @@ static void follow_single(struct game_single *s, const struct table *table, vec2
 	s->was_away = false;
 }
 
+static void note_moved(struct game_watch *watch, const struct layout *layout)
+{
+	for (int i = 0; i < watch->rest.count; i++) {
+		int j = layout_find(layout, &watch->rest.ball[i], watch->rest.track[i]);
+		if (j >= 0 && vec2_dist(layout->ball[j].pos, watch->rest.ball[i].pos) >= MET)
+			watch->moved[i] = true;
+	}
+}
+
 static double distance_to_way(vec2 p, vec2 from, vec2 to)
 {
 	vec2 way = vec2_sub(to, from);
@@ -114,6 +123,8 @@ void game_watch_frame(struct game_watch *watch, const struct table *table, const
 			watch->single[COLOUR_WHITE].jumped;
 	if (layout->cue >= 0 && !occluded)
 		watch->farthest = fmax(watch->farthest, vec2_dist(cue, start));
+	if (watch->played)
+		note_moved(watch, layout);
 	if (watch->played && watch->first < 0 && !occluded)
 		find_first(watch, layout, cue);
 }

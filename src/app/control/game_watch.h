@@ -25,6 +25,7 @@ struct game_watch {
 	double farthest;    /* m, of the cue ball from its place while nothing was over the table */
 	int first;	    /* object ball met first, index into rest; -1: none was seen to move */
 	bool first_sure;    /* no other moved in the same frame */
+	bool moved[BALL_MAX]; /* of rest: was seen on its way; one that fell without was gone before it could be seen, nobody knows when */
 	struct game_single single[COLOUR_COUNT]; /* by colour; reds are not followed */
 };
 

@@ -18,7 +18,7 @@ static const struct command {
 	{&run_options, cmd_run},	   {&status_options, cmd_status},
 	{&control_options, cmd_control},   {&demo_options, cmd_demo},
 	{&judge_options, cmd_judge},	   {&match_options, cmd_match},
-	{&help_options, cmd_help},
+	{&fsm_options, cmd_fsm},	   {&help_options, cmd_help},
 };
 enum { COMMAND_COUNT = sizeof command_table / sizeof *command_table };
 
