@@ -83,6 +83,7 @@ START_TEST(the_game_is_kept_by_the_rules)
 	ck_assert_ptr_nonnull(strstr(said, "\"shots\":1"));
 	ck_assert_ptr_nonnull(strstr(said, "\"wrong\":0,"));
 	ck_assert_ptr_nonnull(strstr(said, "\"more_than_one_request\":0,"));
+	ck_assert_ptr_nonnull(strstr(said, "\"changed_after_drawn\":0,"));
 	ck_assert_ptr_nonnull(strstr(said, "\"ball_on_wrong\":0,\"in_hand_wrong\":0,"));
 }
 END_TEST

@@ -14,6 +14,7 @@
 
 /* What a camera's errors may do to a layout; more is no error but a wrong position. */
 static const double SHIFT_MAX = 0.006, OVERLAP_MAX = 0.005; /* m */
+static const double POT_WAIT = 1;   /* s a proposal that pots nothing waits for one that does */
 static const double SHOT_TIME = 60; /* s after which a shot that nobody saw come to rest is given up */
 
 static struct stability_limits stability_limits_of(const struct config_infinity *c)
@@ -282,22 +283,11 @@ static struct stability_view view_of(const struct controller *c, const billiard_
 	return view;
 }
 
-/* White and the six colours are there once each; by the rules that matters. */
-static int second_of_its_colour(const struct controller *c, const struct layout *layout)
-{
-	int count[COLOUR_COUNT] = {0};
-	for (int i = 0; i < layout->count && c->config->infinity.rules; i++) {
-		enum ball_colour colour = layout->ball[i].colour;
-		if (++count[colour] > 1 && colour != COLOUR_RED)
-			return i;
-	}
-	return -1;
-}
-
 /* Whether balls can lie as they are seen. What cannot be settled is no position. */
 static bool holds_together(struct controller *c)
 {
-	int culprit = second_of_its_colour(c, &c->seen);
+	/* Which colour a ball has matters by the rules. */
+	int culprit = c->config->infinity.rules ? layout_second_of_colour(&c->seen) : -1;
 	if (culprit >= 0) {
 		words_of_ball(c->word, &c->seen.ball[culprit], "seen twice");
 		return false;
@@ -433,10 +423,18 @@ static bool makes_way(const struct controller *c)
 	return same_first_shot(&c->plan, &c->offered) || then < now - c->config->infinity.better_margin * fabs(now);
 }
 
-/* A proposal is shown when it is final or has not changed for a while. */
+/* A proposal is shown when it is final or has not changed for a while: for longer when it pots nothing, a pot mostly follows. */
+static bool has_settled(const struct controller *c, double now)
+{
+	double wait = c->config->infinity.show_time;
+	if (c->offered.entries[0].shots[0].target < 0)
+		wait = fmax(wait, POT_WAIT);
+	return c->offered.is_final || now - c->offered_since >= wait;
+}
+
 static void settle_offer(struct controller *c, double now)
 {
-	if (!c->has_offer || !(c->offered.is_final || now - c->offered_since >= c->config->infinity.show_time))
+	if (!c->has_offer || !has_settled(c, now))
 		return;
 	c->has_offer = false;
 	if (!makes_way(c))

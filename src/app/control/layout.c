@@ -23,6 +23,17 @@ int layout_find(const struct layout *layout, const struct ball *ball, int track)
 	return nearest;
 }
 
+int layout_second_of_colour(const struct layout *layout)
+{
+	int count[COLOUR_COUNT] = {0};
+	for (int i = 0; i < layout->count; i++) {
+		enum ball_colour colour = layout->ball[i].colour;
+		if (++count[colour] > 1 && colour != COLOUR_RED)
+			return i;
+	}
+	return -1;
+}
+
 bool layout_differs(const struct layout *a, const struct layout *b, double distance)
 {
 	if (a->count != b->count)

@@ -21,6 +21,9 @@ bool layout_differs(const struct layout *a, const struct layout *b, double dista
 /* The same ball in another layout: by its identity; without one (single frames) the nearest of its colour. -1: not there. */
 int layout_find(const struct layout *layout, const struct ball *ball, int track);
 
+/* White and the six colours are there once each: a ball that is the second of its colour, -1 none. */
+int layout_second_of_colour(const struct layout *layout);
+
 /* How far a camera's errors may reach, and what a ball cannot lie in. */
 struct layout_limits {
 	double shift;	/* m, a ball may be moved by that much */
