@@ -69,13 +69,14 @@ START_TEST(the_game_is_kept_by_the_rules)
 	char command[900], path[160], said[TEXT_SIZE];
 	snprintf(path, sizeof path, "%s", fixture_file("rules.conf"));
 	snprintf(command, sizeof command,
-		 "sed -e 's/rules = false/rules = true/' -e 's/time_scale = 8/time_scale = 2/' -e 's/still_time = 250/still_time = 400/' %s >%s",
+		 "sed -e 's/rules = false/rules = true/' -e 's/time_scale = 8/time_scale = 2/' -e 's/still_time = "
+		 "250/still_time = 400/' %s >%s",
 		 conf, path);
 	ck_assert_int_eq(system(command), 0);
 	for (int i = 0; i < PROGRAM_COUNT; i++)
 		fixture_start(programs[i], (const char *[]){"-c", path, NULL});
-	judge = fixture_start("billiard", (const char *[]){"judge", "-c", path, "--live", "--shots", "10", "--seconds", "90",
-							   "--json", NULL});
+	judge = fixture_start("billiard", (const char *[]){"judge", "-c", path, "--live", "--shots", "10", "--seconds",
+							   "90", "--json", NULL});
 	ck_assert(fixture_wait(bus, has_ended, 120));
 	fixture_said(judge, 1, said, sizeof said);
 	printf("loop: %s", said);

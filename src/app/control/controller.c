@@ -14,7 +14,7 @@
 
 /* What a camera's errors may do to a layout; more is no error but a wrong position. */
 static const double SHIFT_MAX = 0.006, OVERLAP_MAX = 0.005; /* m */
-static const double POT_WAIT = 1;   /* s a proposal that pots nothing waits for one that does */
+static const double POT_WAIT = 1;			    /* s a proposal that pots nothing waits for one that does */
 static const double SHOT_TIME = 60; /* s after which a shot that nobody saw come to rest is given up */
 
 static struct stability_limits stability_limits_of(const struct config_infinity *c)

@@ -219,7 +219,8 @@ static bool was_played(const struct game *game, const struct table *table, const
 	bool went = vec2_dist(game->rest.ball[game->rest.cue].pos, rest->ball[rest->cue].pos) > TOUCHED;
 	bool placed = game->state.in_hand && is_in_d(table, rest->ball[rest->cue].pos) &&
 		      watch->farthest < 2 * table->baulk_d_radius + TOUCHED;
-	return object_moved(&game->rest, rest) || watch->first >= 0 || watch->single[COLOUR_WHITE].jumped || (went && !placed);
+	return object_moved(&game->rest, rest) || watch->first >= 0 || watch->single[COLOUR_WHITE].jumped ||
+	       (went && !placed);
 }
 
 static void grant_wishes(struct game *game, const struct layout *rest)

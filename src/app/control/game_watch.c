@@ -2,16 +2,16 @@
 
 #include <math.h>
 
-static const double PLAYED = 0.005;	/* m the cue ball must have moved */
-static const double MET = 0.003;	/* m an object ball must have moved */
-static const double JUMP = 0.1;		/* m between two places that are no way of a ball that was away */
-static const double LONG_AWAY = 1;	/* s */
-static const double AWAY = 0.15;	/* s; shorter, and it was a ball that was not seen for a moment */
-static const double LIES = 0.01;	/* m around where it came back */
+static const double PLAYED = 0.005;		/* m the cue ball must have moved */
+static const double MET = 0.003;		/* m an object ball must have moved */
+static const double JUMP = 0.1;			/* m between two places that are no way of a ball that was away */
+static const double LONG_AWAY = 1;		/* s */
+static const double AWAY = 0.15;		/* s; shorter, and it was a ball that was not seen for a moment */
+static const double LIES = 0.01;		/* m around where it came back */
 static const double FASTEST = 10, FLIGHT = 0.3; /* m/s, m: no ball goes farther between two frames */
-static const double STILL = 0.1;	/* m/s */
-static const double STRUCK = 0.2;	/* m that a cue ball at rest goes between two frames when it is struck */
-static const double REACH_TIME = 0.2;	/* s before a ball that moves to a pocket reaches it unseen */
+static const double STILL = 0.1;		/* m/s */
+static const double STRUCK = 0.2;     /* m that a cue ball at rest goes between two frames when it is struck */
+static const double REACH_TIME = 0.2; /* s before a ball that moves to a pocket reaches it unseen */
 
 static int find_colour(const struct layout *layout, enum ball_colour colour)
 {
@@ -92,7 +92,8 @@ static void find_first(struct game_watch *watch, const struct layout *layout, ve
 	for (int i = 0; i < watch->rest.count; i++) {
 		int j = i == watch->rest.cue ? -1 : layout_find(layout, &watch->rest.ball[i], watch->rest.track[i]);
 		/* One that is gone was struck away so fast that it is not followed yet, or has fallen. */
-		bool met = i != watch->rest.cue && (j < 0 || vec2_dist(layout->ball[j].pos, watch->rest.ball[i].pos) >= MET);
+		bool met = i != watch->rest.cue &&
+			   (j < 0 || vec2_dist(layout->ball[j].pos, watch->rest.ball[i].pos) >= MET);
 		if (!met)
 			continue;
 		double d = distance_to_way(watch->rest.ball[i].pos, from, cue);

@@ -7,11 +7,11 @@
 
 /* A ball of which there is one. */
 struct game_single {
-	vec2 pos;	/* m, where it was seen last */
-	double speed;	/* m/s, there */
-	double time;	/* s, then */
-	bool seen;	/* at all */
-	bool was_away;	/* in the last frame */
+	vec2 pos;      /* m, where it was seen last */
+	double speed;  /* m/s, there */
+	double time;   /* s, then */
+	bool seen;     /* at all */
+	bool was_away; /* in the last frame */
 	/* It came back where it lies since: from a pocket, or after long, or faster than a ball goes. */
 	bool jumped;
 	/* It came back where it was before, after a while. */
@@ -25,7 +25,8 @@ struct game_watch {
 	double farthest;    /* m, of the cue ball from its place while nothing was over the table */
 	int first;	    /* object ball met first, index into rest; -1: none was seen to move */
 	bool first_sure;    /* no other moved in the same frame */
-	bool moved[BALL_MAX]; /* of rest: was seen on its way; one that fell without was gone before it could be seen, nobody knows when */
+	bool moved
+		[BALL_MAX]; /* of rest: was seen on its way; one that fell without was gone before it could be seen, nobody knows when */
 	struct game_single single[COLOUR_COUNT]; /* by colour; reds are not followed */
 };
 
