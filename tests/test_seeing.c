@@ -7,6 +7,7 @@
 
 #include "app/process/event_log.h"
 #include "app/virtual/judge_match.h"
+#include "physics/sim.h"
 #include "vision_rig.h"
 
 static const double mm = 1e-3, dt = 1 / 30.0;
@@ -342,6 +343,51 @@ START_TEST(test_drift_of_2_mm_a_second)
 }
 END_TEST
 
+/* One shot of the cue ball by physics, some frames missing; a second of rest behind it. Returns the frames at rest in
+ * which nothing was doubted but perhaps a cue ball that fell. */
+static int play_shot(struct random *r, double *time)
+{
+	static struct sim sim; /* too large for the stack */
+	static struct trace_entry entry[4000];
+	struct trace trace;
+	struct model model;
+	struct ball start[BALL_MAX];
+	int believed = 0;
+	ck_assert(model_from_name("real", &model));
+	memcpy(start, rig->ball, sizeof(start));
+	sim_init(&sim, &rig->config.table, &model, start, rig->count);
+	sim_strike(&sim, 0, &(struct shot){.angle = random_in(r, -M_PI, M_PI), .speed = random_in(r, 0.5, 3)});
+	trace_init(&trace, entry, 4000);
+	sim_run(&sim, &(struct sim_limits){60, 3999}, &trace);
+	double end = trace_end(&trace);
+	for (double t = 0, since = *time; t < end + 1; frame++) {
+		t += random_in(r, 0, 1) < 0.05 ? random_in(r, 0.1, 0.3) : dt;
+		rig->count = 0;
+		for (int i = 0; i < sim.ball_count; i++) {
+			struct ball ball = trace_at(&trace, i, fmin(t, end));
+			if (ball.phase != BALL_POTTED)
+				rig->ball[rig->count++] = ball_at(ball.colour, ball.pos);
+		}
+		rig_track(frame, *time = since + t);
+		bool sure = t > end + 0.1 && (rig->result.doubt & ~DOUBT_NO_CUE) == 0;
+		ck_assert_msg(!sure || !wrong()[0], "%.2f s after the rest: believed, but %s", t - end, wrong());
+		believed += sure;
+	}
+	ck_assert_msg(!wrong()[0], "a second after the rest: %s", wrong());
+	return believed;
+}
+
+START_TEST(test_random_shots)
+{
+	struct random r = random_begin("seeing_shots");
+	double time = 0;
+	for (int shot = 0; shot < 4; shot++) {
+		rig_scatter(&r, 18);
+		ck_assert_int_gt(play_shot(&r, &time), 10);
+	}
+}
+END_TEST
+
 /* ---- recorded rests
  * -------------------------------------------------------------------------------------------------- */
 
@@ -434,6 +480,7 @@ Suite *test_suite(void)
 	tcase_add_test(tc, test_balls_in_jaws);
 	tcase_add_test(tc, test_gaps);
 	tcase_add_test(tc, test_drift_of_2_mm_a_second);
+	tcase_add_test(tc, test_random_shots);
 	tcase_add_test(tc, test_recorded_rests);
 	tcase_set_timeout(tc, 120);
 	suite_add_tcase(suite, tc);
