@@ -324,18 +324,20 @@ static uint64_t hash(uint64_t h, const void *data, size_t size)
 
 /* A long run with losses, repetitions, spoiled numbers, hands and commands. Never a crash, nothing invalid goes out,
  * and the same run gives the same messages. */
-static uint64_t storm(uint64_t seed)
+static uint64_t storm(uint64_t seed, bool rules)
 {
 	static const char *const commands[] = {
 		"pause",    "resume",	 "next",	   "previous",		"halo",	  "paths", "table", "info",
-		"infinity", "animation", "animation-stop", "animation-restart", "cancel", "x"};
+		"infinity", "animation", "animation-stop", "animation-restart", "cancel", "x",	   "game"};
 	struct random random = {seed};
 	uint64_t h = 1469598103934665603u;
 	ctl_setup();
+	ctl.config.infinity.rules = rules;
 	for (int i = 0; i < 4000; i++) {
 		unsigned what = (unsigned)(random_u64(&random) % 40);
 		if (what == 0)
-			ctl_command(commands[random_u64(&random) % (sizeof commands / sizeof commands[0])], "0.5");
+			ctl_command(commands[random_u64(&random) % (sizeof commands / sizeof commands[0])],
+				    rules ? "undo" : "0.5");
 		else if (what == 1)
 			ctl_shot();
 		else if (what == 2)
@@ -364,7 +366,7 @@ START_TEST(storms_are_survived_and_repeatable)
 	struct random random = random_begin("controller storm");
 	for (int i = 0; i < 3; i++) {
 		uint64_t seed = random_u64(&random);
-		ck_assert_uint_eq(storm(seed), storm(seed));
+		ck_assert_uint_eq(storm(seed, false), storm(seed, false));
 		/* Afterwards a calm table gets its proposal. */
 		billiard_table_state_t spoiled = ctl.state;
 		struct controller *survivor = malloc(sizeof *survivor);
@@ -380,6 +382,20 @@ START_TEST(storms_are_survived_and_repeatable)
 		ctl_shot();
 		ctl_frames(MANY);
 		ck_assert_int_eq(ctl.c.fsm.state, FSM_PLANNING);
+	}
+}
+END_TEST
+
+/* The same with the game kept: whatever is seen, scores stay numbers and wishes balls. */
+START_TEST(storms_by_the_rules_are_survived_and_repeatable)
+{
+	struct random random = random_begin("controller storm by the rules");
+	for (int i = 0; i < 4; i++) {
+		uint64_t seed = random_u64(&random);
+		ck_assert_uint_eq(storm(seed, true), storm(seed, true));
+		const struct game *game = &ctl.c.keeper.game;
+		ck_assert(game->score[0] >= 0 && game->score[1] >= 0 && game->wish_count >= 0 &&
+			  game->wish_count <= GAME_WISHES && (game->turn == 0 || game->turn == 1));
 	}
 }
 END_TEST
@@ -411,6 +427,7 @@ Suite *test_suite(void)
 	tcase_add_checked_fixture(storms, ctl_setup, NULL);
 	tcase_set_timeout(storms, 60);
 	tcase_add_test(storms, storms_are_survived_and_repeatable);
+	tcase_add_test(storms, storms_by_the_rules_are_survived_and_repeatable);
 	suite_add_tcase(suite, storms);
 	return suite;
 }
