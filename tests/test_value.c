@@ -451,6 +451,43 @@ START_TEST(mirrored_positions)
 }
 END_TEST
 
+struct first {
+	uint64_t work; /* nodes and simulations before the first proposal */
+	int told;
+	double value; /* of the last one */
+};
+
+static void told(void *context, const struct plan_result *result)
+{
+	struct first *first = context;
+	if (first->told++ == 0)
+		first->work = result->nodes + result->sims;
+	first->value = result->plan[0].shot[0].value;
+}
+
+/* The first proposal does not wait for values: it comes after some hundred nodes and simulations, about a millisecond. */
+START_TEST(first_proposal_is_early)
+{
+	struct lay lay = {.on = ON_RED, .count = BALL_MAX};
+	struct cost_profile profile = player(0.3, 0.05);
+	uint64_t most = 0;
+	for (int variant = 0; variant < 10; variant++) {
+		char err[200];
+		scene_after_break(&table, variant, lay.ball);
+		struct planner *planner = scene_planner(&table, "real", &profile, 1);
+		struct plan_request request = request_for(&lay, 5000);
+		struct plan_result result;
+		struct first first = {.told = 0};
+		ck_assert_int_eq(planner_run(planner, &request, told, &first, &result, err, sizeof err), 0);
+		ck_assert_int_gt(first.told, 0);
+		most = first.work > most ? first.work : most;
+		planner_destroy(planner);
+	}
+	printf("first proposal after at most %llu nodes and simulations\n", (unsigned long long)most);
+	ck_assert_uint_le(most, 200);
+}
+END_TEST
+
 /* A player who errs more is promised less. */
 START_TEST(worth_falls_with_the_error)
 {
@@ -500,6 +537,7 @@ Suite *test_suite(void)
 	tcase_add_test(positions, opening_without_a_foul);
 	tcase_add_loop_test(positions, any_number_of_workers, 0, 2);
 	tcase_add_test(positions, mirrored_positions);
+	tcase_add_test(positions, first_proposal_is_early);
 	tcase_add_test(positions, worth_falls_with_the_error);
 	suite_add_tcase(suite, positions);
 	return suite;
