@@ -35,6 +35,34 @@ START_TEST(best_first_and_stable)
 }
 END_TEST
 
+static void check_order(const int cost[], int count)
+{
+	struct frontier frontier;
+	ck_assert_int_eq(frontier_init(&frontier, 8 * EACH), 0);
+	for (int i = 0; i < count; i++)
+		frontier_push(&frontier, &(struct node){.cost = cost[i]});
+	for (int i = 0; i < count; i++)
+		ck_assert_double_eq(frontier_pop(&frontier).cost, i);
+	frontier_finish(&frontier);
+}
+
+/* Every order in which up to seven can come: a heap goes wrong at its ends. */
+START_TEST(every_order_of_a_few)
+{
+	for (int count = 1, orders = 1; count <= 7; count++, orders *= count)
+		for (int k = 0; k < orders; k++) {
+			int cost[7], rest = k;
+			for (int i = 0; i < count; i++) {
+				int at = rest % (i + 1);
+				rest /= i + 1;
+				cost[i] = cost[at];
+				cost[at] = i;
+			}
+			check_order(cost, count);
+		}
+}
+END_TEST
+
 START_TEST(full_keeps_the_best)
 {
 	struct random random = random_begin("full_keeps_the_best");
@@ -67,6 +95,7 @@ Suite *test_suite(void)
 	TCase *tc = tcase_create("frontier");
 	tcase_set_timeout(tc, 30);
 	tcase_add_test(tc, best_first_and_stable);
+	tcase_add_test(tc, every_order_of_a_few);
 	tcase_add_test(tc, full_keeps_the_best);
 	tcase_add_test(tc, too_small);
 	suite_add_tcase(suite, tc);
