@@ -201,6 +201,20 @@ START_TEST(colour_after_the_last_red)
 }
 END_TEST
 
+/* A ball lies within the bed as a whole: its centre a radius from every cushion. */
+START_TEST(places_lie_a_radius_from_the_cushions)
+{
+	struct game g;
+	begin(&g);
+	double x = g.table.length / 2 - g.table.ball_radius, y = g.table.width / 2 - g.table.ball_radius;
+	for (int side = -1; side <= 1; side += 2) {
+		ck_assert(respot_is_free(&g.table, g.ball, 0, (vec2){side * (x - 1e-6), side * (y - 1e-6)}));
+		ck_assert(!respot_is_free(&g.table, g.ball, 0, (vec2){side * (x + 1e-6), 0}));
+		ck_assert(!respot_is_free(&g.table, g.ball, 0, (vec2){0, side * (y + 1e-6)}));
+	}
+}
+END_TEST
+
 START_TEST(next_higher_spot)
 {
 	struct game g;
@@ -287,6 +301,7 @@ Suite *test_suite(void)
 	suite_add_tcase(suite, tc);
 	tc = tcase_create("respot");
 	tcase_set_timeout(tc, 30);
+	tcase_add_test(tc, places_lie_a_radius_from_the_cushions);
 	tcase_add_test(tc, next_higher_spot);
 	tcase_add_test(tc, all_spots_occupied);
 	tcase_add_test(tc, respots_are_free_and_nearest);

@@ -354,12 +354,34 @@ START_TEST(regions_leave_nothing_out)
 }
 END_TEST
 
+/* A region holds the whole of what is looked for in it: a ball that touches any point of it is inside. */
+START_TEST(regions_hold_their_parts)
+{
+	for (int thesis = 0; thesis < 2; thesis++) {
+		struct table t = thesis ? scene_thesis_table() : scene_snooker_table();
+		for (int i = 0; i < t.pocket_count; i++) {
+			const struct table_region *region = &t.region[i];
+			for (int k = 0; k < t.cushion_count; k++) {
+				const vec2 end[2] = {t.cushion[k].a, t.cushion[k].b};
+				for (int e = 0; e < 2 && region->cushions >> k & 1; e++)
+					ck_assert_msg(region->low.x < end[e].x - t.ball_radius &&
+							      region->low.y < end[e].y - t.ball_radius &&
+							      region->high.x > end[e].x + t.ball_radius &&
+							      region->high.y > end[e].y + t.ball_radius,
+						      "region %d, cushion %d", i, k);
+			}
+		}
+	}
+}
+END_TEST
+
 Suite *test_suite(void)
 {
 	Suite *suite = suite_create("table");
 	TCase *tcase = tcase_create("table");
 	tcase_set_timeout(tcase, 60);
 	tcase_add_test(tcase, normals_point_to_the_playing_side);
+	tcase_add_test(tcase, regions_hold_their_parts);
 	tcase_add_test(tcase, free_ends_get_tips);
 	tcase_add_test(tcase, regions_hold_what_is_near);
 	tcase_add_test(tcase, bad_tables_are_refused);
