@@ -67,12 +67,37 @@ START_TEST(ties_do_not_depend_on_the_order)
 }
 END_TEST
 
+/* What makes two solutions different makes their keys different: ties are ordered by them. */
+START_TEST(keys_tell_solutions_apart)
+{
+	static struct state state[1];
+	struct task task = {.state = state};
+	struct record record = {
+		.shot = {.angle = 0.5, .speed = 1}, .target = 3, .pocket = 2, .chain_count = 1, .chain = {4}};
+	uint64_t key[6];
+	key[0] = solution_make(&task, 0, &record).key;
+	ck_assert_uint_eq(solution_make(&task, 0, &record).key, key[0]);
+	struct record other[5] = {record, record, record, record, record};
+	other[0].pocket = 1;
+	other[1].target = 2;
+	other[2].shot.angle = 0.6;
+	other[3].shot.speed = 2;
+	other[4].chain[0] = 5;
+	for (int i = 0; i < 5; i++) {
+		key[i + 1] = solution_make(&task, 0, &other[i]).key;
+		for (int k = 0; k <= i; k++)
+			ck_assert_uint_ne(key[i + 1], key[k]);
+	}
+}
+END_TEST
+
 Suite *test_suite(void)
 {
 	Suite *suite = suite_create("solutions");
 	TCase *tc = tcase_create("solutions");
 	tcase_add_test(tc, keeps_the_best_in_order);
 	tcase_add_test(tc, ties_do_not_depend_on_the_order);
+	tcase_add_test(tc, keys_tell_solutions_apart);
 	suite_add_tcase(suite, tc);
 	return suite;
 }
