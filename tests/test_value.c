@@ -60,6 +60,28 @@ START_TEST(points_are_normal)
 }
 END_TEST
 
+/* The first 2^k points lie one in each 2^k-th of every dimension: what makes a few of them worth many. */
+START_TEST(points_are_spread)
+{
+	enum { MOST = 256 };
+	static struct deviate point[MOST];
+	for (uint64_t seed = 0; seed < 5; seed++)
+		for (int n = 2; n <= MOST; n *= 2) {
+			player_error_points(point, n, seed);
+			for (int k = 0; k < ERROR_DIMENSIONS; k++) {
+				bool taken[MOST] = {false};
+				for (int i = 0; i < n; i++) {
+					int cell = (int)(n * gsl_cdf_ugaussian_P(point[i].z[k]));
+					ck_assert_int_lt(cell, n);
+					ck_assert_msg(!taken[cell], "seed %d, %d points, dimension %d", (int)seed, n,
+						      k);
+					taken[cell] = true;
+				}
+			}
+		}
+}
+END_TEST
+
 START_TEST(errors_are_applied)
 {
 	struct shot shot = {.angle = 1, .speed = 2, .side = 0.1, .follow = -0.2, .elevation = 0.1};
@@ -514,6 +536,7 @@ Suite *test_suite(void)
 	TCase *error = tcase_create("error");
 	tcase_add_test(error, quantiles);
 	tcase_add_test(error, points_are_normal);
+	tcase_add_test(error, points_are_spread);
 	tcase_add_test(error, errors_are_applied);
 	suite_add_tcase(suite, error);
 	TCase *estimates = tcase_create("estimate");

@@ -32,35 +32,51 @@ double normal_quantile(double p)
 	return polynomial(a, 6, r) * q / polynomial(b, 6, r);
 }
 
-/* A number in [0, 1) from a seed and a dimension: splitmix64. */
-static double shift_of(uint64_t seed, int dimension)
+enum { SOBOL_BITS = 32 };
+
+/* Primitive polynomials (degree, inner coefficients) and first direction numbers: Joe and Kuo 2008, dimensions 2 to 5;
+ * the first dimension is van der Corput's sequence. */
+static const struct {
+	int degree;
+	uint32_t inner, first[3];
+} sobol_table[ERROR_DIMENSIONS] = {{0, 0, {0}}, {1, 0, {1}}, {2, 1, {1, 3}}, {3, 1, {1, 3, 1}}, {3, 2, {1, 1, 1}}};
+
+static void sobol_directions(int dimension, uint32_t direction[SOBOL_BITS])
+{
+	int degree = sobol_table[dimension].degree;
+	for (int i = 0; i < SOBOL_BITS; i++) {
+		if (degree == 0) {
+			direction[i] = 1u << (SOBOL_BITS - 1 - i);
+			continue;
+		}
+		if (i < degree) {
+			direction[i] = sobol_table[dimension].first[i] << (SOBOL_BITS - 1 - i);
+			continue;
+		}
+		direction[i] = direction[i - degree] ^ (direction[i - degree] >> degree);
+		for (int k = 1; k < degree; k++)
+			if (sobol_table[dimension].inner >> (degree - 1 - k) & 1)
+				direction[i] ^= direction[i - k];
+	}
+}
+
+/* 32 bits from a seed and a dimension: splitmix64. */
+static uint32_t shift_of(uint64_t seed, int dimension)
 {
 	uint64_t z = seed + (uint64_t)(dimension + 1) * 0x9e3779b97f4a7c15u;
 	z = (z ^ (z >> 30)) * 0xbf58476d1ce4e5b9u;
 	z = (z ^ (z >> 27)) * 0x94d049bb133111ebu;
-	return (double)((z ^ (z >> 31)) >> 11) * 0x1p-53;
-}
-
-/* The positive root of x^(d+1) = x + 1. */
-static double golden(int d)
-{
-	double x = 2;
-	for (int i = 0; i < 60; i++)
-		x = pow(1 + x, 1.0 / (d + 1));
-	return x;
+	return (uint32_t)((z ^ (z >> 31)) >> 32);
 }
 
 void player_error_points(struct deviate *point, int count, uint64_t seed)
 {
-	double root = golden(ERROR_DIMENSIONS), step = 1;
 	for (int k = 0; k < ERROR_DIMENSIONS; k++) {
-		step /= root;
-		double shift = seed ? shift_of(seed, k) : 0.5;
+		uint32_t direction[SOBOL_BITS], at = shift_of(seed, k);
+		sobol_directions(k, direction);
 		for (int i = 0; i < count; i++) {
-			double at = shift + (i + 1) * step;
-			at -= floor(at);
-			at = fmin(fmax(at, 1e-6), 1 - 1e-6);
-			point[i].z[k] = normal_quantile(at);
+			point[i].z[k] = normal_quantile((at + 0.5) * 0x1p-32);
+			at ^= direction[__builtin_ctz((unsigned)i + 1)]; /* Gray code order */
 		}
 	}
 }

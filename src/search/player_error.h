@@ -20,9 +20,9 @@ struct deviate {
 	double z[ERROR_DIMENSIONS];
 };
 
-/* The first count points of a low-discrepancy sequence (Roberts 2018, additive recurrence on the generalised golden
- * ratio), turned into normal deviates. The same points for every shot: common random numbers. seed shifts the sequence
- * (Cranley and Patterson 1976); the mean of any prefix is near zero. */
+/* The first count points of Sobol's sequence (1967; directions of Joe and Kuo 2008) in Gray code order, with a random
+ * digital shift, as normal deviates. The same points for every shot: common random numbers. Any 2^k points from the first
+ * on lie one in each 2^k-th of every dimension: a few do for means what many random ones would. */
 void player_error_points(struct deviate *point, int count, uint64_t seed);
 
 /* The stroke that comes of a meant shot. Kept within what a strike can be: speed in (0, SHOT_SPEED_MAX], tip within

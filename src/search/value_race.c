@@ -82,6 +82,7 @@ static void round_of(struct value_search *v, int field, int count, bool deep)
 		field = v->stroke_count;
 	if (count > VALUE_SAMPLES)
 		count = VALUE_SAMPLES;
+	count += count % 2; /* samples come in pairs */
 	v->to_sample = count;
 	v->deep = deep;
 	v->first = -1;
@@ -141,7 +142,7 @@ static void add_neighbours(struct value_search *v, double step)
 static void refine(struct value_search *v)
 {
 	double sims = REFINE_SHARE * (double)v->request.sims;
-	int count = (int)(sims / PASSES / (LEADERS * MOVES));
+	int count = 2 * (int)(sims / PASSES / (2 * LEADERS * MOVES));
 	for (int pass = 0; pass < PASSES && count >= LEAST_SAMPLES && !value_is_over(v); pass++) {
 		int first = v->stroke_count;
 		add_neighbours(v, pass == 0 ? 1 : 0.5);
