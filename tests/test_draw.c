@@ -265,6 +265,30 @@ START_TEST(no_light_touches_a_ball)
 }
 END_TEST
 
+/* A stroke beside the ball's middle is told, one through it is not. */
+START_TEST(the_tip_is_told)
+{
+	static const struct {
+		double side, follow;
+		const char *text;
+	} tips[] = {{0, 0, "m/s  0\u00b0"},	   {0, 0.4, "0\u00b0  high 40%"},      {0, -0.2, "0\u00b0  low 20%"},
+		    {0.3, 0, "0\u00b0  left 30%"}, {-0.3, 0.4, "high 40%  right 30%"}, {0.02, -0.02, "m/s  0\u00b0"}};
+	for (size_t i = 0; i < sizeof tips / sizeof *tips; i++) {
+		struct table table = begin_plan();
+		struct draw_options options = draw_options_default();
+		plan.entries[0].shots[0].side = tips[i].side;
+		plan.entries[0].shots[0].follow = tips[i].follow;
+		draw_proposal(&list, &table, &(struct draw_subject){&plan, 0, 0}, &options);
+		const billiard_draw_item_t *found = find_text("m/s");
+		ck_assert_ptr_nonnull(found);
+		ck_assert_msg(strstr((const char *)found->text, tips[i].text) != NULL, "\"%s\" does not tell \"%s\"",
+			      (const char *)found->text, tips[i].text);
+		bool middle = fabs(tips[i].side) < 0.05 && fabs(tips[i].follow) < 0.05;
+		ck_assert_int_eq(strchr((const char *)found->text, '%') == NULL, middle);
+	}
+}
+END_TEST
+
 START_TEST(text_lies_free)
 {
 	struct random random = random_begin("text_lies_free");
@@ -461,6 +485,7 @@ Suite *test_suite(void)
 	tcase_add_test(proposal, proposal_shows_its_parts);
 	tcase_add_test(proposal, options_switch_parts_off);
 	tcase_add_test(proposal, no_light_touches_a_ball);
+	tcase_add_test(proposal, the_tip_is_told);
 	tcase_add_test(proposal, text_lies_free);
 	tcase_add_test(proposal, opening_position_has_text_and_rings);
 	tcase_add_test(proposal, balls_that_fall_have_no_place_of_rest);

@@ -11,6 +11,7 @@
  * R from its foot. */
 static const double HALO = 2.2;			/* radii */
 static const double GHOST = 1.0;		/* radii */
+static const double TIP_TOLD = 0.05;		/* of the radius: nearer to the middle is the middle */
 static const double POCKET = 1.6;		/* pocket radii: outside the hole, inside the markers on the rails */
 static const double LINE = 0.005, THIN = 0.004; /* m */
 static const double TEXT_HEIGHT = 0.055, POCKET_HEIGHT = 0.04, INFO_HEIGHT = 0.024; /* m */
@@ -204,16 +205,29 @@ static void draw_pocket(const struct proposal *proposal)
 	draw_pocket_arc(proposal, &proposal->table->pocket[pocket], &(struct draw_pen){2 * LINE, rgba, false});
 }
 
+/* Where the tip meets the ball, in words: what is struck beside the middle and not told would be struck through it. */
+static void tip_words(const billiard_plan_shot_t *shot, char *out, size_t size)
+{
+	double follow = shot->follow, side = shot->side;
+	char high[24] = "", left[24] = "";
+	if (fabs(follow) >= TIP_TOLD)
+		snprintf(high, sizeof(high), "  %s %.0f%%", follow > 0 ? "high" : "low", 100 * fabs(follow));
+	if (fabs(side) >= TIP_TOLD)
+		snprintf(left, sizeof(left), "  %s %.0f%%", side > 0 ? "left" : "right", 100 * fabs(side));
+	snprintf(out, size, "%s%s", high, left);
+}
+
 /* Speed and angle (counter-clockwise from the way to the black cushion) where the player looks, at the cue ball; the pocket's name at the
  * pocket. */
 static void draw_labels(const struct proposal *proposal, int number, int shots)
 {
-	char text[64], which[32] = "";
+	char text[64], which[32] = "", tip[48];
 	int pocket = proposal->shot->pocket, cue = cue_ball(proposal);
 	if (shots > 1)
 		snprintf(which, sizeof(which), "  %d/%d", number, shots);
-	snprintf(text, sizeof(text), "%.1f m/s  %.0f\u00b0%s", proposal->shot->speed, proposal->shot->angle * RADIAN,
-		 which);
+	tip_words(proposal->shot, tip, sizeof(tip));
+	snprintf(text, sizeof(text), "%.1f m/s  %.0f\u00b0%s%s", proposal->shot->speed, proposal->shot->angle * RADIAN,
+		 tip, which);
 	vec2 at_cue = ball_lies(proposal, cue) ? ball_start(proposal, cue) : (vec2){0, 0};
 	draw_field_text(&proposal->field, proposal->list,
 			&(struct draw_label){text, at_cue, TEXT_REACH, TEXT_HEIGHT, TEXT_RGBA});
