@@ -247,13 +247,15 @@ static bool on_status(void *context, const void *message)
 	const billiard_status_t *s = message;
 	char name[sizeof s->process], state[sizeof s->state];
 	text_get(name, sizeof name, s->process, sizeof s->process);
+	if (strcmp(name, "billiard-vision") != 0)
+		return true;
+	d->bad = (int)metric(s, "bad");
+	if (metric(s, "ended") > 0 && d->source_ended <= 0)
+		d->source_ended = clock_seconds();
+	/* for people only: which photograph is shown goes into the line that is printed, and decides nothing */
 	text_get(state, sizeof state, s->state, sizeof s->state);
-	if (strcmp(name, "billiard-vision") == 0 && strcmp(state, "end of source") == 0)
-		d->source_ended = d->source_ended > 0 ? d->source_ended : clock_seconds();
-	if (strcmp(name, "billiard-vision") == 0 && strncmp(state, "photo ", 6) == 0)
+	if (strncmp(state, "photo ", 6) == 0)
 		snprintf(d->picture, sizeof d->picture, "%s", state + 6);
-	if (strcmp(name, "billiard-vision") == 0)
-		d->bad = (int)metric(s, "bad");
 	return true;
 }
 

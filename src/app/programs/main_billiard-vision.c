@@ -227,6 +227,7 @@ static void describe(void *context, struct process *process)
 	process_metric(process, "work", "ms", 1e3 * p->work);
 	process_metric(process, "dropped", "1", (double)f.dropped);
 	process_metric(process, "bad", "1", (double)(p->bad + f.bad));
+	process_metric(process, "ended", "1", f.ended);
 	process_metric(process, "balls", "1", p->result.ball_count);
 	process_metric(process, "residual", "px", p->result.residual_px);
 	process_metric(process, "pose age", "s", p->result.pose_age);
