@@ -3,9 +3,9 @@
 #include "search/export.h"
 #include "search/why.h"
 
-/* Simulations that a worker makes in a second, at the least: what a time budget is planned with. Those that come late
- * are cut off by the clock. */
-static const double SIMS_PER_SECOND = 120e3;
+/* Simulations that an idle core of a cloud machine makes in a second: what a time budget is planned with. What comes late
+ * is cut off by the clock. */
+static const double SIMS_PER_SECOND = 170e3;
 static const uint64_t SIMS_DEFAULT = 30000; /* without any budget */
 
 struct worth {
