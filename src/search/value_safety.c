@@ -32,7 +32,7 @@ static void find_directions(struct fan *fan)
 	const struct value_root *root = &v->request.root[0];
 	int found = 0;
 	for (int i = 0; i < FAN && !value_is_over(v); i++) {
-		double angle = 2 * M_PI * i / FAN;
+		double angle = 2 * M_PI * i / FAN - M_PI; /* as atan2 has it */
 		int met = first_met(v, &v->worker[0], root, angle);
 		if (met >= 0 && rules_ball_on(&root->rules, root->ball, v->request.ball_count, met))
 			fan->angle[found++] = angle;
